@@ -80,6 +80,18 @@ std::optional<int> pad_before_tip(const hands::HandModel& hand, int finger) {
   return last;
 }
 
+/// A second pad on the link of the finger's tip; empty if there is none.
+std::optional<int> end_pad(const hands::HandModel& hand, int finger) {
+  const int tip_pad = *hand.fingers[finger].tip_pad;
+  for (int p = 0; p < std::ssize(hand.pads); ++p) {
+    if (p != tip_pad && hand.pads[p].finger == finger &&
+        hand.pads[p].link == hand.pads[tip_pad].link) {
+      return p;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
@@ -171,6 +183,12 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
       if (const std::optional<int> pad = pad_before_tip(hand, finger)) pads.push_back(*pad);
     }
   }
+  const std::size_t num_before_ends = pads.size();
+  if (rule.may_use_ends) {
+    for (const int finger : requested.fingers) {
+      if (const std::optional<int> pad = end_pad(hand, finger)) pads.push_back(*pad);
+    }
+  }
   for (hands::PadSamples& samples : hands::pad_samples(hand, pads, kMostSamples, rule.along_pads)) {
     Part& part = parts_.emplace_back();
     part.finger = hand.pads[samples.pad].finger;
@@ -198,15 +216,13 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
   if (rule.may_add_finger && !requested.palm) {
     for (std::vector<std::size_t>& set : finger_sets(num_asked + 1)) add(std::move(set));
   }
-  if (may_wrap && parts_.size() > num_usual) {
-    std::vector<std::size_t> wrap = asked;
-    for (std::size_t other = num_usual; other < parts_.size(); ++other) {
-      const auto finger =
-          std::find(requested.fingers.begin(), requested.fingers.end(), *parts_[other].finger);
-      wrap[finger - requested.fingers.begin()] = other;
-    }
+  if (num_before_ends > num_usual) {
+    std::vector<std::size_t> wrap = with_other_pads(num_usual, num_before_ends, requested.fingers);
     wrap.push_back(palm);
     add(std::move(wrap));
+  }
+  if (parts_.size() > num_before_ends && !requested.palm) {
+    add(with_other_pads(num_before_ends, parts_.size(), requested.fingers));
   }
   if (rule.may_pair || (!rule.may_add_finger && !rule.may_add_palm)) return;
   const auto cannot_close = [](const Grip& grip) { return grip.parts.size() == 2; };
@@ -227,13 +243,26 @@ std::optional<hands::OpeningRange> HandGrips::square_widths(double friction) con
   return range;
 }
 
+/// The requested fingers' parts, the parts from `first` to before `last` in their fingers' places.
+std::vector<std::size_t> HandGrips::with_other_pads(std::size_t first, std::size_t last,
+                                                    const std::vector<int>& fingers) const {
+  std::vector<std::size_t> parts(fingers.size());
+  std::iota(parts.begin(), parts.end(), 0);
+  for (std::size_t other = first; other < last; ++other) {
+    const auto finger = std::find(fingers.begin(), fingers.end(), *parts_[other].finger);
+    parts[finger - fingers.begin()] = other;
+  }
+  return parts;
+}
+
 void HandGrips::add(std::vector<std::size_t> parts) {
   if (parts.size() > kMostParts) return;
   Grip grip;
   grip.parts = std::move(parts);
   grip.has_palm = !parts_[grip.parts.back()].finger;
-  grip.wraps = std::any_of(grip.parts.begin(), grip.parts.end(),
-                           [&](std::size_t part) { return parts_[part].other_pad.has_value(); });
+  grip.wraps = grip.has_palm && std::any_of(grip.parts.begin(), grip.parts.end(), [&](auto part) {
+                 return parts_[part].other_pad.has_value();
+               });
   const std::size_t first = grip.parts.front();
   for (const std::size_t other : grip.parts) {
     if (other == first || grip.has_palm) continue;

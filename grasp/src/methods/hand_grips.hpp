@@ -52,6 +52,8 @@ struct GripRule {
   /// The palm together with the pads behind the requested fingers' tips instead of these, where the
   /// palm may touch.
   bool may_wrap = false;
+  /// The ends of the requested fingers instead of their tips' pads: second pads of the tips' links.
+  bool may_use_ends = false;
 };
 
 /// The parts of a hand that may touch, and the grips: which of them touch together.
@@ -77,10 +79,10 @@ class HandGrips {
 
   /// Grips of the requested parts, and others that the rule allows where the hand has them with
   /// pads: with the palm or a finger more, not both, or wrapped around the object: with the palm
-  /// and, of each requested finger that has one, the last pad before its tip's link. No more than
-  /// `kMostParts` parts. Two contacts cannot close, so that where parts may be added there are
-  /// grips of two only if the hand has no others or the rule allows them. At least one finger is
-  /// requested.
+  /// and, of each requested finger that has one, the last pad before its tip's link; or with all of
+  /// their ends. No more than `kMostParts` parts. Two contacts cannot close, so that where parts
+  /// may be added there are grips of two only if the hand has no others or the rule allows them. At
+  /// least one finger is requested.
   HandGrips(const hands::HandModel& hand, const RequestedParts& requested, const GripRule& rule);
 
   const std::vector<Part>& parts() const { return parts_; }
@@ -93,6 +95,8 @@ class HandGrips {
 
  private:
   void add(std::vector<std::size_t> parts);
+  std::vector<std::size_t> with_other_pads(std::size_t first, std::size_t last,
+                                           const std::vector<int>& fingers) const;
 
   std::vector<Part> parts_;
   std::vector<Pinch> pinches_;

@@ -100,8 +100,8 @@ GripRule grip_rule(const GuidanceScene& scene) {
   GripRule rule;
   rule.along_pads = rule.may_pair = scene.surroundings.surroundings().table_z_O.has_value();
   // Without refinement hands are fitted, which only fingertips' pads can be.
-  rule.may_wrap = options.style != GraspStyle::Precision && options.refine &&
-                  scene.contact_options.pads == contact::CountedPads::All;
+  rule.may_use_ends = options.refine && scene.contact_options.pads == contact::CountedPads::All;
+  rule.may_wrap = rule.may_use_ends && options.style != GraspStyle::Precision;
   if (options.style == GraspStyle::Auto) {
     rule.may_add_finger = true;
     rule.may_add_palm = options.palm.value_or(true);

@@ -1,4 +1,5 @@
-"""Barrett hand BH8-280: with its four motors, and with free distal joints for comparison.
+"""Barrett hand BH8-280: with its four motors; the same with the round ends of its fingers as further
+pads; and with free distal joints for comparison.
 
 Numbers in millimeters and degrees. Frame H: origin at the palm reference point, z the palm
 direction, y from the thumb toward fingers 1 and 2 at spread 0.
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from generator.hand_files import (Description, flat_pad, json_text, markdown_table, mesh_sizes, meters,
+from generator.hand_files import (Description, bulging_pad, flat_pad, json_text, markdown_table, mesh_sizes, meters,
                                   number, obj_text, rectangle, rounded, sidecar, table_rows, write_files)
 from generator.ring_meshes import (MeshBuilder, circle, fillet_levels, inset, rounded_rectangle,
                                    smooth_step)
@@ -228,12 +229,46 @@ def distal_pad(p):
     return r0 * normal, np.array([normal[1], -normal[0]]), normal, np.array([tx, ty]), tilt
 
 
+TIP_STEPS = 12  # of the round tip, from the back to the pad's end
+
+
+def tip_arc(p):
+    """(point, normal) of the round tip's outline, from the back to the pad, without the pad's end."""
+    _, _, _, tip, tilt = distal_pad(p)
+    angles = [math.radians(-90.0 + (180.0 - math.degrees(tilt)) * k / TIP_STEPS) for k in range(TIP_STEPS)]
+    normals = [np.array([math.cos(a), math.sin(a)]) for a in angles]
+    return [(tip + p["distal_tip_radius"] * n, n) for n in normals]
+
+
+EDGE_FILLET = 4.0  # [own] radius of the distal link's rounded edges, mm
+# [own] The end pad lies about the step that leans 58 degrees from the flat pad: on what is narrower than
+# 60 mm fingertips lean by 50 to 75 (`graspfit hand reach`). It goes on for three steps on both sides.
+END_PAD_STEP, END_PAD_STEPS = 8, 3
+
+
+def end_pad(p):
+    """(origin, axes, outline, bulge) of the pad on the round tip, mm; the bulge is the mesh's surface."""
+    arc = tip_arc(p)
+    half_width = p["distal_half_width"] - EDGE_FILLET  # where the edges' rounding ends
+    first, last = END_PAD_STEP - END_PAD_STEPS, END_PAD_STEP + END_PAD_STEPS
+    origin = 0.5 * (arc[first][0] + arc[last][0])
+    normal = arc[END_PAD_STEP][1]
+    z = np.append(normal, 0.0)
+    x = np.array([normal[1], -normal[0], 0.0])
+    y = np.cross(z, x)
+    points = [np.append(q - origin, 0.0) for q, _ in arc[first:last + 1]]
+    half_length = abs(points[0] @ x)
+    outline = [(half_length, -half_width), (half_length, half_width), (-half_length, half_width),
+               (-half_length, -half_width)]
+    bulge = [(q @ x, side * half_width, q @ z) for q in points[1:-1] for side in (1, -1)]
+    return np.append(origin, 0.0), [x, y, z], outline, bulge
+
+
 def barrett_distal(p):
     """Distal link: its outline in the plane of motion, extruded over the width; edges rounded on the
     back and around the tip, sharp along the pad, so that the pad is one flat rectangle."""
     foot, direction, normal, tip, tilt = distal_pad(p)
     r0, r1, w = p["distal_base_radius"], p["distal_tip_radius"], p["distal_half_width"]
-    fillet = 4.0  # [own]
 
     outline = []  # (point, outward normal, share of the rounding)
     tilt_deg = math.degrees(tilt)
@@ -251,12 +286,10 @@ def barrett_distal(p):
     scale = min((q[1] - lowest) / h for q, h in zip(back[1:-1], arch[1:-1]))
     for q, h in zip(back[1:-1], arch[1:-1]):
         outline.append((q - np.array([0.0, scale * h]), np.array([0.0, -1.0]), 1.0))
-    for k in range(0, 12):  # round the tip, up to the pad's end
-        a = math.radians(-90.0 + (180.0 - tilt_deg) * k / 12)
-        n = np.array([math.cos(a), math.sin(a)])
-        outline.append((tip + r1 * n, n, smooth_step((12 - k) / 7)))
+    for k, (q, n) in enumerate(tip_arc(p)):  # up to the pad's end
+        outline.append((q, n, smooth_step((TIP_STEPS - k) / 7)))
 
-    levels = fillet_levels(w, fillet, 5)
+    levels = fillet_levels(w, EDGE_FILLET, 5)
     rings = []
     for h, d in [(-h, d) for h, d in reversed(levels)] + levels:
         rings.append([(*(q - share * d * n), h) for q, n, share in outline])
@@ -305,7 +338,7 @@ def barrett_urdf(p, meshes, name, mesh_folder, has_free_distal_joints):
     return urdf.text()
 
 
-def barrett_sidecar(p, name, has_free_distal_joints):
+def barrett_sidecar(p, name, has_free_distal_joints, has_end_pads):
     foot, direction, normal, _, _ = distal_pad(p)
     pads = []
     for finger in FINGERS:
@@ -320,6 +353,8 @@ def barrett_sidecar(p, name, has_free_distal_joints):
         pads.append(flat_pad(f"{finger}_proximal_pad", f"{finger}_proximal_link", finger,
                              [(px0 + px1) / 2, p["proximal_y"][1], 0.0], [x, np.cross(z, x), z],
                              rectangle(px1 - px0, 2 * (p["proximal_half_width"] - 2.0))))
+        if has_end_pads:
+            pads.append(bulging_pad(f"{finger}_end_pad", f"{finger}_distal_link", finger, *end_pad(p)))
     pads.append(flat_pad("palm_pad", "palm", "palm", [0.0, 0.0, 0.0], np.eye(3),
                          [rounded(meters(c)) for c in inset(plate_outline(p), PLATE_EDGE)]))
     # Links that share a joint overlap at it.
@@ -341,6 +376,8 @@ def barrett_sidecar(p, name, has_free_distal_joints):
         description = ("Barrett hand BH8-280 with 4 independent joints: spread (fingers 1 and 2 together) "
                        "and one per finger; each distal joint follows its proximal joint by one third "
                        "until that is blocked, then goes on alone (TorqueSwitch).")
+        if has_end_pads:
+            description += " The round ends of its fingers are pads, too."
     fingers = [
         {"name": finger, "thumb": finger == "thumb",
          "links": ([] if finger == "thumb" else [f"{finger}_knuckle"])
@@ -402,20 +439,28 @@ def barrett_source(p, meshes):
               "## The hand with 7 independent joints", "",
               "`barrett_7dof` is the same hand, with the same meshes, whose distal joints are free; the spread "
               "stays common to fingers 1 and 2. No such hand is built: it is there to see what the coupling "
-              "costs.", ""]
+              "costs.", "",
+              "## The hand with its fingers' ends as pads", "",
+              "`barrett_ends` is the same hand, with the same meshes and four independent joints, whose fingers "
+              "have one pad more each: the round end of the distal link, which touches what is too narrow "
+              "for the flat pads. The paper's hand has flat pads alone. An end pad is the mesh's own surface: "
+              f"{2 * END_PAD_STEPS} of the {TIP_STEPS} facets of the tip cylinder, about the direction that leans "
+              f"{math.degrees(math.acos(normal @ tip_arc(p)[END_PAD_STEP][1])):.0f} degrees from the flat pad's, "
+              f"{number(2 * (p['distal_half_width'] - EDGE_FILLET))} mm wide (23 less the rounded edges).", ""]
     return "\n".join(lines)
 
 
 def write(out):
-    """Both Barrett hands; the second uses the meshes of the first."""
+    """The Barrett hands; the others use the meshes of the first."""
     p = BARRETT
     meshes = {"palm": barrett_palm(p), "knuckle": barrett_knuckle(p), "proximal": barrett_proximal(p),
               "distal": barrett_distal(p)}
     files = {f"meshes/{mesh}.obj": obj_text(mesh, meshes[mesh]) for mesh in meshes}
     files["SOURCE.md"] = barrett_source(p, meshes)
-    for name, mesh_folder, is_free in (("barrett", "meshes", False),
-                                       ("barrett_7dof", "../barrett/meshes", True)):
+    for name, mesh_folder, is_free, has_ends in (("barrett", "meshes", False, False),
+                                                 ("barrett_ends", "../barrett/meshes", False, True),
+                                                 ("barrett_7dof", "../barrett/meshes", True, False)):
         files[f"{name}.urdf"] = barrett_urdf(p, meshes, name, mesh_folder, is_free)
-        files[f"{name}.graspfit.json"] = json_text(barrett_sidecar(p, name, is_free)) + "\n"
+        files[f"{name}.graspfit.json"] = json_text(barrett_sidecar(p, name, is_free, has_ends)) + "\n"
         write_files(out / name, files)
         files = {}

@@ -183,6 +183,14 @@ def flat_pad(name, link, finger, center_mm, axes, outline):
             "outline_m": outline, "clip": {"kind": "prism", "thickness_m": None}}
 
 
+def bulging_pad(name, link, finger, center_mm, axes, outline_mm, surface_mm):
+    return {"name": name, "link": link, "finger": finger,
+            "frame": {"translation_m": rounded(meters(center_mm)), "rotation_wxyz": quaternion(axes)},
+            "outline_m": [rounded(meters(corner), 9) for corner in outline_mm],
+            "surface_m": [rounded(meters(point), 9) for point in surface_mm],
+            "clip": {"kind": "offset", "thickness_m": None}}
+
+
 def write_files(folder, files):
     """Writes {relative path: text} below a folder."""
     for name, text in files.items():

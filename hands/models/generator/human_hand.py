@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from generator.hand_files import (Description, json_text, markdown_table, mesh_sizes, meters, number,
+from generator.hand_files import (Description, bulging_pad, json_text, markdown_table, mesh_sizes, meters, number,
                                   obj_text, quaternion, rounded, sidecar, table_rows, write_files)
 from generator.ring_meshes import signed_volume
 from generator.smooth_surface import (blend, cut, ellipsoid, half_space, heights_along, meshed, moved,
@@ -323,12 +323,9 @@ def human_sidecar(p, pad_list, name, scale, is_coupled):
         [{"name": digit, "thumb": digit == "thumb", "links": digit_links(digit),
           "joints": [j[0] for j in joints(p) if j[0].startswith(digit)],
           "swing_joint": f"{digit}_abduction", "tip_pad": f"{digit}_distal_pad"} for digit in DIGITS],
-        [{"name": pad, "link": link, "finger": finger,
-          "frame": {"translation_m": rounded(meters(scale * origin)),
-                    "rotation_wxyz": quaternion([axes[:, k] for k in range(3)])},
-          "outline_m": [rounded(meters(scale * c for c in corner), 9) for corner in outline],
-          "surface_m": [rounded(meters(scale * c for c in point), 9) for point in surface],
-          "clip": {"kind": "offset", "thickness_m": None}}
+        [bulging_pad(pad, link, finger, scale * origin, [axes[:, k] for k in range(3)],
+                     [[scale * c for c in corner] for corner in outline],
+                     [[scale * c for c in point] for point in surface])
          for pad, link, finger, origin, axes, outline, surface in pad_list],
         {"link": "palm", "center_m": [0.0, 0.0, 0.0], "direction": [0.0, 0.0, 1.0], "pad": "palm_pad"},
         closing, couplings, exclusions)
