@@ -1,3 +1,5 @@
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <future>
 #include <limits>
@@ -111,6 +113,34 @@ TEST_CASE("A cube rests on the table, and is lifted by jaws that press hard enou
   SECTION("held too lightly, it stays behind") {  // Friction carries 0.6 N.
     CHECK(test.test(pinch(0.5)).stage == HoldStage::Load);
   }
+}
+
+TEST_CASE("A ball stays on a facet on the table, though its pieces have fewer", "[hold_test]") {
+  const geometry::TriangleMesh ball = geometry::ball(0.025, 2);
+  const geometry::Face& facet = ball.faces[100];
+  const Eigen::Vector3d down =
+      ball.vertices[facet[0]] + ball.vertices[facet[1]] + ball.vertices[facet[2]];
+  const geometry::RigidTransform X_OB(
+      Eigen::Quaterniond::FromTwoVectors(down, -Eigen::Vector3d::UnitZ()));
+  HoldObject object = prepare_hold_object(geometry::transformed(ball, X_OB));
+  grasp::Grasp open = pinch(0.0);
+  open.configuration = open.squeeze->configuration = open.pre_grasp->configuration;
+  // How far it is from where it is in the end, once it has sunk into the table.
+  const auto shift = [&] {
+    HoldTest test(testing::convex_hand(testing::two_jaws()), object,
+                  hold_protocol("tabletop-lift"));
+    const std::vector<HoldFrame> frames = test.replay(open, 0);
+    double largest = 0.0;
+    for (const HoldFrame& frame : frames) {
+      if (frame.time < 0.2) continue;
+      const Eigen::Vector3d way = frame.X_OB.translation() - frames.back().X_OB.translation();
+      largest = std::max(largest, way.norm());
+    }
+    return largest;
+  };
+  CHECK(shift() < 2e-4);
+  object.foot_O.clear();
+  CHECK(shift() > 1e-3);
 }
 
 TEST_CASE(

@@ -10,6 +10,7 @@
 
 #include "graspfit/base/as_index.hpp"
 #include "graspfit/base/list_text.hpp"
+#include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 
 namespace graspfit::hold_test::internal {
@@ -119,15 +120,21 @@ class Scene {
     std::string geoms;
     for (const geometry::TriangleMesh& piece : shape.pieces) {
       if (geometry::signed_volume(piece) < kLeastPieceVolume) continue;
-      const std::string name = "piece_" + std::to_string(num_pieces_++);
-      std::string vertices;
-      for (const Eigen::Vector3d& vertex : piece.vertices) {
-        vertices += (vertices.empty() ? "" : " ") + numbers(Eigen::Vector3d(vertex + shift));
-      }
-      meshes_ += "<mesh" + attribute("name", name) + attribute("vertex", vertices) + "/>\n";
-      geoms += "<geom" + attribute("class", kind) + attribute("mesh", name) + "/>\n";
+      geoms += hull(piece.vertices, attribute("class", kind), shift);
     }
     return geoms;
+  }
+
+  /// Returns the geom of the points' convex hull, translated by `shift`.
+  std::string hull(const std::vector<Eigen::Vector3d>& points, const std::string& attributes,
+                   const Eigen::Vector3d& shift) {
+    const std::string name = "piece_" + std::to_string(num_pieces_++);
+    std::string vertices;
+    for (const Eigen::Vector3d& point : points) {
+      vertices += (vertices.empty() ? "" : " ") + numbers(Eigen::Vector3d(point + shift));
+    }
+    meshes_ += "<mesh" + attribute("name", name) + attribute("vertex", vertices) + "/>\n";
+    return "<geom" + attributes + attribute("mesh", name) + "/>\n";
   }
 
   /// Returns the link's inertia as described. What the description leaves out or states as zero is
@@ -196,12 +203,20 @@ class Scene {
 
   void add_object() {
     const Eigen::Vector3d& center = object_.center_of_mass_O;
+    const bool is_on_table = protocol_.load == HoldLoad::Lift;
     bodies_ += "<body name=\"object\"" + position(center) + ">\n<freejoint name=\"object\"/>\n" +
                inertial(protocol_.object_mass, Eigen::Vector3d::Zero(),
                         protocol_.object_mass * object_.inertia_per_mass_O) +
-               pieces(object_.shape, "object", -center) + "</body>\n";
-    if (protocol_.load != HoldLoad::Lift) return;
+               pieces(object_.shape, "object", -center);
     double lowest = std::numeric_limits<double>::infinity();
+    if (is_on_table && geometry::convex_hull(object_.foot_O).measure > kLeastPieceVolume) {
+      // The table alone meets it.
+      bodies_ += hull(object_.foot_O,
+                      attribute("class", "object") + " contype=\"0\" conaffinity=\"4\"", -center);
+      for (const Eigen::Vector3d& point : object_.foot_O) lowest = std::min(lowest, point.z());
+    }
+    bodies_ += "</body>\n";
+    if (!is_on_table) return;
     for (const geometry::TriangleMesh& piece : object_.shape.pieces) {
       for (const Eigen::Vector3d& vertex : piece.vertices) lowest = std::min(lowest, vertex.z());
     }

@@ -25,6 +25,10 @@ struct HoldObject {
   Eigen::Matrix3d inertia_per_mass_O = Eigen::Matrix3d::Zero();  ///< Inertia over mass, about the
                                                                  ///< center of mass along O's axes
                                                                  ///< [m²].
+  /// Points in O whose convex hull stands on the table, beside the pieces: the corners of the
+  /// mesh's hull at most 1 mm above its lowest one, and a point of the object over each. Round
+  /// objects roll off pieces, which have fewer corners than they rest on.
+  std::vector<Eigen::Vector3d> foot_O;
 };
 HoldObject prepare_hold_object(const geometry::TriangleMesh& mesh,
                                const geometry::ConvexDecompositionOptions& options = {});
