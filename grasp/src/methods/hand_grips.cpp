@@ -26,6 +26,7 @@ constexpr double kDistanceStep = 0.005;  // [m]
 constexpr int kDistanceClasses = 80;
 constexpr double kLeanStep = 9.0 * base::kRadiansPerDegree;
 constexpr int kLeanClasses = 7;  // to 63 degrees
+constexpr int kMostLess = 2;     // classes by which jaws may lean less
 
 /// The class of a pair; empty beyond the last ones.
 std::optional<std::size_t> class_of(double distance, double lean_a, double lean_b) {
@@ -134,11 +135,20 @@ PinchTable::PinchTable(const hands::PadSamples& a, const hands::PadSamples& b)
   }
 }
 
+bool PinchTable::may_have(double distance, double along_a, double along_b, bool may_lean) const {
+  if (!(distance < kDistanceStep * kDistanceClasses)) return false;
+  // With a margin for rounding, which is decided by angles.
+  static const double usual = std::cos(kLeanStep * kLeanClasses) - 1e-6;
+  static const double most = std::cos(kLeanStep * (kLeanClasses + kMostLess)) - 1e-6;
+  const double least = (may_lean && are_jaws_ ? most : usual) * distance;
+  return along_a > least && along_b > least;
+}
+
 std::optional<std::pair<std::int32_t, std::int32_t>> PinchTable::draw(double distance,
                                                                       double lean_a, double lean_b,
                                                                       base::Random& random,
                                                                       bool may_lean) const {
-  const int most_less = may_lean && are_jaws_ ? 2 : 0;
+  const int most_less = may_lean && are_jaws_ ? kMostLess : 0;
   for (int less = 0; less <= most_less; ++less) {
     for (int of_a = less; of_a >= 0; --of_a) {
       for (int of_b = less; of_b >= 0; --of_b) {

@@ -22,6 +22,10 @@ class PinchTable {
  public:
   PinchTable(const hands::PadSamples& a, const hands::PadSamples& b);
 
+  /// Whether `draw` may know a pair whose pads lean so at this distance: its cheap first question.
+  /// @param along_a, along_b of the pads' normals, the parts along the line between them [m]
+  bool may_have(double distance, double along_a, double along_b, bool may_lean) const;
+
   /// A pair, sample of a and of b, of about this distance [m] and these leans [rad] (within 5 mm
   /// and 9 degrees); empty if there is none. @param may_lean where there is none, one of jaws
   /// that leans by up to 18 degrees less may do: they always face each other

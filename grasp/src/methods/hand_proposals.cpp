@@ -36,6 +36,15 @@ double cost(double gap, const Vector3d& pad_normal, const Vector3d& inward_norma
   return gap + kLeanLever * std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
+/// Of unit vectors.
+bool is_within_proposed_lean(const Vector3d& a, const Vector3d& b) {
+  // The angle is asked only where it is near the limit.
+  static const double limit = std::cos(kMostProposedLean);
+  const double cosine = a.dot(b);
+  if (std::abs(cosine - limit) > 1e-6) return cosine > limit;
+  return geometry::angle_between(a, b) <= kMostProposedLean;
+}
+
 /// The palm pose in which pads a and b lie on two points as squarely as they can; where their pads
 /// leave the turn about the line open, it is drawn. Empty if a pad leans too much.
 std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, const Facing& a_O,
@@ -46,15 +55,15 @@ std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, cons
                             .toRotationMatrix();
   const Vector3d normal_a = onto * a_H.normal;
   const Vector3d normal_b = onto * b_H.normal;
-  const auto lean = [&](double turn) {
-    const Eigen::AngleAxisd roll(turn, line_O);
-    return std::max(geometry::angle_between(roll * normal_a, a_O.normal),
-                    geometry::angle_between(roll * normal_b, b_O.normal));
+  const auto leans_little = [&](double turn) {
+    const Matrix3d roll = Eigen::AngleAxisd(turn, line_O).toRotationMatrix();
+    return is_within_proposed_lean(roll * normal_a, a_O.normal) &&
+           is_within_proposed_lean(roll * normal_b, b_O.normal);
   };
   std::optional<double> turn;
   for (int draw = 0; draw < kRollDraws && !turn; ++draw) {
     const double drawn = random.uniform(-std::numbers::pi, std::numbers::pi);
-    if (lean(drawn) <= kMostProposedLean) turn = drawn;
+    if (leans_little(drawn)) turn = drawn;
   }
   if (!turn) {
     // Both normals' parts across the line turned onto those of the surface, as nearly as possible.
@@ -69,7 +78,7 @@ std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, cons
     add(normal_a, a_O.normal);
     add(normal_b, b_O.normal);
     turn = std::atan2(sine, cosine);
-    if (lean(*turn) > kMostProposedLean) return std::nullopt;
+    if (!leans_little(*turn)) return std::nullopt;
   }
   RigidTransform X_OH = RigidTransform::Identity();
   X_OH.linear() = Eigen::AngleAxisd(*turn, line_O).toRotationMatrix() * onto;
@@ -91,14 +100,7 @@ HandProposals::HandProposals(const hands::HandModel& hand, const ObjectModel& ob
 
 std::optional<HandProposal> HandProposals::draw(const HandGrips::Grip& grip,
                                                 base::Random& random) const {
-  std::optional<HandProposal> drawn =
-      grip.has_palm ? palm_first(grip, random) : pinch(grip, random);
-  if (drawn && !is_above_table(*drawn)) return std::nullopt;
-  return drawn;
-}
-
-bool HandProposals::is_above_table(const HandProposal& proposal) const {
-  return table_.is_above(proposal.configuration, proposal.is_fixed);
+  return grip.has_palm ? palm_first(grip, random) : pinch(grip, random);
 }
 
 std::optional<HandProposal> HandProposals::completed(const HandGrips::Grip& grip, double most,
@@ -123,19 +125,28 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
   const Facing a_O = facing(a);
   const Facing b_O = facing(b);
   const Vector3d line = b_O.point - a_O.point;
-  if (!(line.norm() > 0.0)) return std::nullopt;
+  const double distance = line.norm();
+  if (!(distance > 0.0)) return std::nullopt;
+  const bool may_lean = table_.has_table();
+  const double along_a = a_O.normal.dot(line);
+  const double along_b = -b_O.normal.dot(line);
+  if (!pinch.table.may_have(distance, along_a, along_b, may_lean)) return std::nullopt;
   // Pads that face each other need no space beside one another. Without a table that makes no
   // difference to what is found, but to its course.
   const bool may_be_near = table_.has_table() && a.inward_normal_O.dot(b.inward_normal_O) < 0.0;
-  if (!may_be_near && targets_.is_too_near(line.norm())) return std::nullopt;
+  if (!may_be_near && targets_.is_too_near(distance)) return std::nullopt;
   const auto samples =
-      pinch.table.draw(line.norm(), geometry::angle_between(a_O.normal, line),
-                       geometry::angle_between(b_O.normal, -line), random, table_.has_table());
+      pinch.table.draw(distance, geometry::angle_between(a_O.normal, line),
+                       geometry::angle_between(b_O.normal, -line), random, may_lean);
   if (!samples) return std::nullopt;
   const std::optional<RigidTransform> X_OH =
       aligned(facing(grips_.parts()[pinch.part_a].samples, samples->first),
               facing(grips_.parts()[pinch.part_b].samples, samples->second), a_O, b_O, random);
-  if (!X_OH) return std::nullopt;
+  if (!X_OH || !table_.is_palm_above(*X_OH) ||
+      !table_.is_above(pinch.part_a, samples->first, *X_OH) ||
+      !table_.is_above(pinch.part_b, samples->second, *X_OH)) {
+    return std::nullopt;
+  }
   const auto placing = [&](std::size_t part, std::int32_t sample, const PoolPoint& place) {
     const Facing pad_H = facing(grips_.parts()[part].samples, sample);
     const double gap = (*X_OH * pad_H.point - place.point_O).norm();
@@ -146,8 +157,9 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
               placing(pinch.part_b, samples->second, b));
 }
 
-/// The palm on a point of the pool, leaning a little, turned anyhow.
-HandProposal HandProposals::palm_first(const HandGrips::Grip& grip, base::Random& random) const {
+/// The palm on a point of the pool, leaning a little, turned anyhow; empty if it is below a table.
+std::optional<HandProposal> HandProposals::palm_first(const HandGrips::Grip& grip,
+                                                      base::Random& random) const {
   const PoolPoint& point = targets_.pool()[random.index(targets_.pool().size())];
   const hands::PadSamples& palm = grips_.parts()[grip.parts.back()].samples;
   const auto sample = base::as_index<std::int32_t>(random.index(palm.size()));
@@ -164,6 +176,7 @@ HandProposal HandProposals::palm_first(const HandGrips::Grip& grip, base::Random
                       .normalized()
                       .toRotationMatrix();
   X_OH.translation() = point.point_O - X_OH.linear() * pad.point;
+  if (!table_.is_palm_above(X_OH)) return std::nullopt;
   // The palm lies where it was put: that costs nothing.
   return with(proposal_at(X_OH), {grip.parts.back(), sample, *point.patch, 0.0});
 }
@@ -221,11 +234,7 @@ std::optional<HandProposals::Placing> HandProposals::cheapest(const HandProposal
       if (2.0 - 2.0 * normal.dot(place.normal) >= lean_left * lean_left) continue;
       const double its_cost = cost(gap, normal, place.normal);
       if (its_cost >= least) continue;
-      if (table_.has_table() &&
-          !is_above_table(
-              with(proposal, {part, base::as_index<std::int32_t>(number), index, 0.0}))) {
-        continue;
-      }
+      if (!table_.is_above(part, base::as_index<std::int32_t>(number), X_OH)) continue;
       least = its_cost;
       best = number;
       best_patch = index;

@@ -48,9 +48,8 @@ class HandProposals {
                                         HandProposal proposal) const;
 
  private:
-  bool is_above_table(const HandProposal& proposal) const;
   std::optional<HandProposal> pinch(const HandGrips::Grip& grip, base::Random& random) const;
-  HandProposal palm_first(const HandGrips::Grip& grip, base::Random& random) const;
+  std::optional<HandProposal> palm_first(const HandGrips::Grip& grip, base::Random& random) const;
   HandProposal proposal_at(const hands::RigidTransform& X_OH) const;
   /// A part of the hand at a patch, as one of its samples is.
   struct Placing {

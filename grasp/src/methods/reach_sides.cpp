@@ -110,6 +110,12 @@ GripRule grip_rule(const GuidanceScene& scene) {
   return rule;
 }
 
+std::vector<const hands::PadSamples*> samples_of(const HandGrips& grips) {
+  std::vector<const hands::PadSamples*> samples;
+  for (const HandGrips::Part& part : grips.parts()) samples.push_back(&part.samples);
+  return samples;
+}
+
 bool are_different(std::vector<std::int32_t> patches) {
   std::sort(patches.begin(), patches.end());
   return std::adjacent_find(patches.begin(), patches.end()) == patches.end();
@@ -125,7 +131,7 @@ ReachSides::ReachSides(const GuidanceScene& scene, const TargetPlaces& targets)
       places_(scene.object, is_in_pool(targets, scene.object.patches.size())),
       search_(scene.hand, scene.object, nearest_, places_, scene.surroundings),
       clearance_(scene.hand, scene.object, scene.surroundings),
-      table_(scene.hand.model(), scene.surroundings),
+      table_(scene.hand.model(), scene.surroundings, samples_of(grips_)),
       proposals_(scene.hand.model(), scene.object, targets, grips_, places_, table_),
       firmness_(scene.object, targets.pool(), firmness_friction(scene.options)),
       pool_of_patch_(scene.object.patches.size(), -1) {

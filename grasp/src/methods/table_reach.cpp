@@ -6,14 +6,17 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
+#include <set>
 
 #include "graspfit/hands/contact_pad.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
+#include "graspfit/hands/hand_configuration.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
 
 namespace graspfit::grasp::internal {
 namespace {
 
+using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr double kMostBelow = 0.005;  // of a proposal's links, which are laid later [m]
@@ -57,34 +60,96 @@ std::array<double, kAngles> depths_below(const hands::HandModel& hand,
   return depths;
 }
 
+/// Of the points those that lie outermost in one of 26 directions, each once.
+std::vector<Vector3d> outermost(const std::vector<Vector3d>& points) {
+  std::set<std::size_t> found;
+  for (int x = -1; x <= 1 && !points.empty(); ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        const Vector3d direction(x, y, z);
+        const auto last = std::max_element(points.begin(), points.end(),
+                                           [&](const Vector3d& a, const Vector3d& b) {
+                                             return direction.dot(a) < direction.dot(b);
+                                           });
+        found.insert(static_cast<std::size_t>(last - points.begin()));
+      }
+    }
+  }
+  std::vector<Vector3d> result;
+  for (const std::size_t i : found) result.push_back(points[i]);
+  return result;
+}
+
 }  // namespace
 
-TableReach::TableReach(const hands::HandModel& hand, const SurroundingsCollision& surroundings)
-    : hand_(hand), surroundings_(surroundings) {
+TableReach::TableReach(const hands::HandModel& hand, const SurroundingsCollision& surroundings,
+                       const std::vector<const hands::PadSamples*>& samples)
+    : surroundings_(surroundings) {
+  if (!has_table()) return;
+  std::vector<std::vector<Vector3d>> corners_L;
   for (int link = 0; link < std::ssize(hand.links); ++link) {
-    std::vector<int>& joints = joints_.emplace_back();
-    for (std::optional<int> at = link; at; at = hand.links[*at].parent_link) {
-      if (const auto& joint = hand.links[*at].parent_joint) joints.push_back(*joint);
+    corners_L.push_back(outermost(surroundings.corners_L(link)));
+  }
+  const auto poses = [&](hands::HandConfiguration configuration) {
+    hands::apply_couplings(hand, configuration.q);
+    return hands::forward_kinematics(hand, configuration);
+  };
+  hands::HandConfiguration configuration = hands::open_configuration(hand);
+  configuration.X_OH = geometry::RigidTransform::Identity();
+  std::vector<Vector3d> points_H;
+  const auto add = [&](int link, const std::vector<geometry::RigidTransform>& X_HL) {
+    for (const Vector3d& corner : corners_L[link]) points_H.push_back(X_HL[link] * corner);
+  };
+  const auto taken = [&] {
+    Eigen::Matrix3Xd columns(3, std::ssize(points_H));
+    for (Index i = 0; i < columns.cols(); ++i) columns.col(i) = points_H[i];
+    points_H.clear();
+    return columns;
+  };
+  const std::vector<geometry::RigidTransform> X_HL_open = poses(configuration);
+  const auto is_fixed_to_palm = [&](int link) { return hands::joints_to(hand, link).empty(); };
+  for (int link = 0; link < std::ssize(hand.links); ++link) {
+    if (is_fixed_to_palm(link)) add(link, X_HL_open);
+  }
+  palm_H_ = taken();
+  for (const hands::PadSamples* of_pad : samples) {
+    std::vector<int> links = hands::links_to(hand, hand.pads[of_pad->pad].link);
+    std::erase_if(links, is_fixed_to_palm);
+    Corners& corners = corners_.emplace_back();
+    for (Index sample = 0; sample < of_pad->points_H.cols(); ++sample) {
+      for (int j = 0; j < std::ssize(of_pad->joints); ++j) {
+        configuration.q[of_pad->joints[j]] = of_pad->positions(j, sample);
+      }
+      const std::vector<geometry::RigidTransform> X_HL = poses(configuration);
+      for (const int link : links) add(link, X_HL);
+      if (sample == 0) corners.per_sample = std::ssize(points_H);
     }
+    corners.points_H = taken();
   }
 }
 
-bool TableReach::is_above(hands::HandConfiguration configuration,
-                          const std::vector<bool>& is_fixed) const {
-  if (!has_table()) return true;
-  hands::apply_couplings(hand_, configuration.q);
-  const auto is_settled = [&](int joint) {
-    const auto& coupling = hand_.joints[joint].coupling;
-    return is_fixed[joint] || (coupling && is_fixed[coupling->leader]);
-  };
-  const std::vector<geometry::RigidTransform> X_OL =
-      hands::forward_kinematics(hand_, configuration);
-  for (int link = 0; link < std::ssize(X_OL); ++link) {
-    if (!std::all_of(joints_[link].begin(), joints_[link].end(), is_settled)) continue;
-    const auto lowest = surroundings_.over_table(link, X_OL[link], -kMostBelow);
-    if (lowest && lowest->height < -kMostBelow) return false;
+template <class Columns>
+bool TableReach::are_above(const Columns& points_H, const geometry::RigidTransform& X_OH) const {
+  const Surroundings& around = surroundings_.surroundings();
+  const double least =
+      *around.table_z_O + around.table_clearance - kMostBelow - X_OH.translation().z();
+  const Vector3d up_H = X_OH.linear().row(2);
+  for (Index i = 0; i < points_H.cols(); ++i) {
+    if (up_H.dot(points_H.col(i)) < least) return false;
   }
   return true;
+}
+
+bool TableReach::is_palm_above(const geometry::RigidTransform& X_OH) const {
+  return !has_table() || are_above(palm_H_, X_OH);
+}
+
+bool TableReach::is_above(std::size_t samples, std::int32_t sample,
+                          const geometry::RigidTransform& X_OH) const {
+  if (!has_table()) return true;
+  const Corners& corners = corners_[samples];
+  return are_above(corners.points_H.middleCols(sample * corners.per_sample, corners.per_sample),
+                   X_OH);
 }
 
 std::vector<PoolPoint> touchable_above_table(std::vector<PoolPoint> pool,

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
+#include "graspfit/geometry/rigid_transform.hpp"
 #include "graspfit/grasp/surroundings.hpp"
-#include "graspfit/hands/hand_configuration.hpp"
 #include "graspfit/hands/hand_model.hpp"
+#include "graspfit/hands/pad_samples.hpp"
 #include "targets/target_places.hpp"
 
 /// \file
@@ -13,23 +16,36 @@
 
 namespace graspfit::grasp::internal {
 
-/// Which proposals put parts of the hand below a table.
+/// Whether palm and fingers of proposals are above the table, to about 5 mm: by a few corners of
+/// each link. All are without a table.
 class TableReach {
  public:
-  /// Refers to hand and surroundings.
-  TableReach(const hands::HandModel& hand, const SurroundingsCollision& surroundings);
+  /// Refers to hand and surroundings. The samples are of the hand's pads.
+  TableReach(const hands::HandModel& hand, const SurroundingsCollision& surroundings,
+             const std::vector<const hands::PadSamples*>& samples);
 
   bool has_table() const { return surroundings_.surroundings().table_z_O.has_value(); }
 
-  /// Whether no link whose place is settled is far below the table: the palm's, and those whose
-  /// joints from the palm on are all `is_fixed`. True without a table. Followers of couplings
-  /// follow.
-  bool is_above(hands::HandConfiguration configuration, const std::vector<bool>& is_fixed) const;
+  /// Whether no link that is fixed to the palm is far below the table.
+  bool is_palm_above(const geometry::RigidTransform& X_OH) const;
+
+  /// Whether no link between the palm and the pad is far below the table where the sample has it.
+  /// @param samples index into those of the constructor
+  bool is_above(std::size_t samples, std::int32_t sample,
+                const geometry::RigidTransform& X_OH) const;
 
  private:
-  const hands::HandModel& hand_;
+  /// Corners of the links from the palm to a pad, as many per sample.
+  struct Corners {
+    Eigen::Index per_sample = 0;
+    Eigen::Matrix3Xd points_H;  ///< [m], of sample after sample.
+  };
+  template <class Columns>
+  bool are_above(const Columns& points_H, const geometry::RigidTransform& X_OH) const;
+
   const SurroundingsCollision& surroundings_;
-  std::vector<std::vector<int>> joints_;  ///< Per link, those from the palm to it.
+  Eigen::Matrix3Xd palm_H_;  ///< Corners of links that are fixed to the palm [m].
+  std::vector<Corners> corners_;
 };
 
 /// Those points that some pad of the hand can touch while its link stays above the table, for some
