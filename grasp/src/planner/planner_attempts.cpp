@@ -28,7 +28,7 @@ constexpr double kAngleSlack = 1e-6;
 // Targets are drawn anew for less. A table in docs/performance.md says what it takes and gains to
 // ask for less or more, and to search longer by another share of a first draw for every draw
 // before.
-constexpr double kFirm = 0.04;
+constexpr double kFirm = 0.04;  // over a table less by every draw, as seldom is it reached there
 constexpr double kMoreEffort = 1.5;
 
 /// That of no grasp, as of one that no contact bears.
@@ -132,7 +132,7 @@ AttemptResult PlannerAttempts::make(std::int64_t number, const TriedStartObserve
   std::vector<AttemptResult> tried;
   std::size_t best = try_starts(guided.starts, number, observer, tried);
   for (int redraws = 1; redraws <= options_.max_redraws && guided.redraw; ++redraws) {
-    if (!tried.empty() && may_be_kept(tried[best])) break;
+    if (!tried.empty() && may_be_kept(tried[best], redraws)) break;
     // Where nothing closes, it takes more work to find what does; where something does, more draws.
     const bool closes = !tried.empty() && tried[best].is_accepted && tried[best].firmness > 0.0;
     const double effort = closes ? 1.0 : 1.0 + kMoreEffort * redraws;
@@ -238,8 +238,8 @@ bool PlannerAttempts::is_enough(const AttemptResult& result, double promise) con
   return false;
 }
 
-/// Whether the best result of all draws so far is good enough for targets not to be drawn anew.
-bool PlannerAttempts::may_be_kept(const AttemptResult& result) const {
+/// Whether the best result of all of so many draws is good enough for targets not to be drawn anew.
+bool PlannerAttempts::may_be_kept(const AttemptResult& result, int num_draws) const {
   if (!result.is_accepted) return false;
   switch (options_.kept) {
     case KeptCandidate::First:
@@ -248,7 +248,8 @@ bool PlannerAttempts::may_be_kept(const AttemptResult& result) const {
     case KeptCandidate::Strongest:
       return is_balanced(result);
     case KeptCandidate::Firmest:
-      return result.firmness >= kFirm;
+      return result.firmness >=
+             (surroundings_.surroundings().table_z_O ? kFirm / (num_draws * num_draws) : kFirm);
   }
   return true;
 }

@@ -82,7 +82,7 @@ class PlannerAttempts {
   StartRank rank_of(const AttemptResult& result) const;
   bool is_rejected(const Grasp& grasp) const;
   bool is_enough(const AttemptResult& result, double promise) const;
-  bool may_be_kept(const AttemptResult& result) const;
+  bool may_be_kept(const AttemptResult& result, int num_draws) const;
 
   const ObjectModel& object_;
   const hands::HandModel& hand_;
