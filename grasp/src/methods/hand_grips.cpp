@@ -226,6 +226,12 @@ HandGrips::HandGrips(const hands::HandModel& hand, const RequestedParts& request
   if (rule.may_add_finger && !requested.palm) {
     for (std::vector<std::size_t>& set : finger_sets(num_asked + 1)) add(std::move(set));
   }
+  if (rule.may_drop_finger && num_asked > 3) {
+    for (std::vector<std::size_t>& set : sets_with_first(num_asked, num_asked - 1)) {
+      if (requested.palm) set.push_back(palm);
+      add(std::move(set));
+    }
+  }
   if (num_before_ends > num_usual) {
     std::vector<std::size_t> wrap = with_other_pads(num_usual, num_before_ends, requested.fingers);
     wrap.push_back(palm);

@@ -48,6 +48,9 @@ struct GripRule {
   bool may_add_finger = false;
   bool may_add_palm = false;
   bool may_exchange = false;  ///< Other fingers instead of the requested ones but the first.
+  /// A finger less, never the first, where three parts are left: on what is narrow over a table
+  /// four fingertips crowd.
+  bool may_drop_finger = false;
   /// Long pads may touch anywhere from their middles to their ends.
   bool along_pads = false;
   /// Grips of two parts stay beside those that can close: by its palm, a gripper that stands above

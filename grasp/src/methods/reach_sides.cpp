@@ -98,7 +98,8 @@ double wanted_firmness(int num_postures, double effort) {
 GripRule grip_rule(const GuidanceScene& scene) {
   const PlannerOptions& options = scene.options;
   GripRule rule;
-  rule.along_pads = rule.may_pair = scene.surroundings.surroundings().table_z_O.has_value();
+  const bool is_over_table = scene.surroundings.surroundings().table_z_O.has_value();
+  rule.along_pads = rule.may_pair = is_over_table;
   // Without refinement hands are fitted, which only fingertips' pads can be.
   rule.may_use_ends = options.refine && scene.contact_options.pads == contact::CountedPads::All;
   rule.may_wrap = rule.may_use_ends && options.style != GraspStyle::Precision;
@@ -106,6 +107,7 @@ GripRule grip_rule(const GuidanceScene& scene) {
     rule.may_add_finger = true;
     rule.may_add_palm = options.palm.value_or(true);
     rule.may_exchange = options.fingers.empty();
+    rule.may_drop_finger = is_over_table;
   }
   return rule;
 }

@@ -131,7 +131,7 @@ TEST_CASE("The cheapest hand is found with or without knowing what another costs
                                        internal::pool_of(scene.object, TargetOptions()));
   const internal::HandGrips grips(scene.hand, scene.parts, internal::GripRule());
   const SurroundingsCollision nothing(scene.hand, {});
-  const internal::TableReach table(scene.hand, nothing);
+  const internal::TableReach table(scene.hand, nothing, {});
   const internal::HandProposals proposals(scene.hand, scene.object, targets, grips, places, table);
   const internal::HandGrips::Grip& grip = grips.grips().front();
   base::Random random(4);
@@ -193,6 +193,57 @@ TEST_CASE("Grips: the requested parts alone, one part more, or any fingers",
   const auto most = grips({{0, 1, 2, 3, 4}}, rule);
   REQUIRE(most.size() == 2);
   CHECK(most.back().parts.size() == 6);
+}
+
+TEST_CASE("Grips with a finger less keep the first and at least three", "[grasp][hand_grips]") {
+  const hands::HandModel hand = hands::find_hand("human_hand");
+  const internal::GripRule rule = {.may_drop_finger = true};
+  const auto grips = internal::HandGrips(hand, {{0, 1, 2, 3}}, rule).grips();
+  REQUIRE(grips.size() == 1 + 3);
+  for (std::size_t i = 1; i < grips.size(); ++i) {
+    CHECK(grips[i].parts.size() == 3);
+    CHECK(grips[i].parts.front() == 0);
+  }
+  CHECK(internal::HandGrips(hand, {{0, 1, 2}}, rule).grips().size() == 1);
+  const auto with_palm = internal::HandGrips(hand, {{0, 1, 2, 3}, true}, rule).grips();
+  REQUIRE(with_palm.size() == 1 + 3);
+  CHECK(std::all_of(with_palm.begin(), with_palm.end(), [](const auto& g) { return g.has_palm; }));
+}
+
+TEST_CASE("Grips with the ends of fingers, where tips' links have a second pad",
+          "[grasp][hand_grips]") {
+  const hands::HandModel hand = hands::find_hand("barrett_ends");
+  const RequestedParts three{
+      {hand.thumb(), hand.finger_index("finger_1"), hand.finger_index("finger_2")}};
+  const internal::HandGrips grips(hand, three, {.may_use_ends = true});
+  REQUIRE(grips.grips().size() == 2);
+  const internal::HandGrips::Grip& ends = grips.grips()[1];
+  CHECK_FALSE(ends.wraps);
+  REQUIRE(ends.pinches.size() == 2);
+  std::vector<std::string> names;
+  for (const std::size_t part : ends.parts) {
+    CHECK(grips.parts()[part].other_pad == grips.parts()[part].samples.pad);
+    names.push_back(hand.pads[grips.parts()[part].samples.pad].name);
+  }
+  CHECK(names == std::vector<std::string>{"thumb_end_pad", "finger_1_end_pad", "finger_2_end_pad"});
+  // At 45 mm the thumb and a finger, 26 mm beside it, face each other with their ends within 45
+  // degrees, and not at all with their flat pads.
+  const auto faces = [&](const internal::HandGrips::Grip& grip) {
+    base::Random random(1);
+    for (int a = 0; a < 5; ++a) {
+      for (int b = 0; b < 5; ++b) {
+        const auto lean = [](int i) { return (i + 0.5) * std::numbers::pi / 20.0; };
+        const auto& table = grips.pinches()[grip.pinches[0]].table;
+        if (table.draw(0.0475, lean(a), lean(b), random)) return true;
+      }
+    }
+    return false;
+  };
+  CHECK(faces(ends));
+  CHECK_FALSE(faces(grips.grips()[0]));
+  CHECK(internal::HandGrips(hand, three, {}).grips().size() == 1);
+  const hands::HandModel paper = hands::find_hand("barrett");
+  CHECK(internal::HandGrips(paper, three, {.may_use_ends = true}).grips().size() == 1);
 }
 
 TEST_CASE("Wrapped grips touch with the palm and the pads behind the tips", "[grasp][hand_grips]") {

@@ -8,6 +8,8 @@
 #include "graspfit/grasp/grasp_planner.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_library.hpp"
+#include "graspfit/hands/kinematic_chain.hpp"
+#include "graspfit/hands/pad_samples.hpp"
 #include "methods/table_reach.hpp"
 #include "support/catch.hpp"
 
@@ -85,27 +87,66 @@ TEST_CASE("Places that no pad reaches above the table are no targets", "[grasp][
   CHECK(internal::touchable_above_table(pool, hand, nothing).size() == pool.size());
 }
 
-TEST_CASE("Proposals below the table are seen by the links whose places are settled",
+TEST_CASE("Whether samples of a hand are above the table is known to 5 mm",
           "[grasp][table_reach]") {
   const hands::HandModel hand = hands::find_hand("barrett");
   const SurroundingsCollision above(hand, table());
-  const internal::TableReach reach(hand, above);
-  hands::HandConfiguration configuration = hands::open_configuration(hand);
-  // Fingers up: the palm's link is the lowest.
-  std::vector<bool> is_fixed(hand.joints.size(), false);
-  configuration.X_OH.translation().z() = 0.2;
-  CHECK(reach.is_above(configuration, is_fixed));
-  configuration.X_OH.translation().z() = -0.1;
-  CHECK_FALSE(reach.is_above(configuration, is_fixed));
-  // Fingers down and too low, but nobody knows yet where they will be.
-  configuration.X_OH.linear() = Vector3d(1.0, -1.0, -1.0).asDiagonal();
-  configuration.X_OH.translation().z() = 0.01;
-  REQUIRE(lowest_of(hand, configuration) < -0.01);
-  CHECK(reach.is_above(configuration, is_fixed));
-  std::fill(is_fixed.begin(), is_fixed.end(), true);
-  CHECK_FALSE(reach.is_above(configuration, is_fixed));
+  const int pad = *hand.fingers[0].tip_pad;
+  const std::vector<hands::PadSamples> samples = hands::pad_samples(hand, {pad}, 64);
+  const internal::TableReach reach(hand, above, {&samples[0]});
+  const std::vector<int> chain = hands::links_to(hand, hand.pads[pad].link);
+  // The lowest vertex of some links, by kinematics of the whole hand.
+  const auto lowest = [&](const hands::HandConfiguration& configuration, bool is_palm) {
+    const auto X_OL = hands::forward_kinematics(hand, configuration);
+    double z = 1.0;
+    for (std::size_t link = 0; link < X_OL.size(); ++link) {
+      const int index = static_cast<int>(link);
+      const bool is_fixed = hands::joints_to(hand, index).empty();
+      if (is_palm ? !is_fixed : is_fixed || std::count(chain.begin(), chain.end(), index) == 0) {
+        continue;
+      }
+      for (const Vector3d& vertex : hand.links[link].mesh_L.vertices) {
+        z = std::min(z, (X_OL[link] * vertex).z());
+      }
+    }
+    return z;
+  };
+  base::Random random(3);
+  constexpr double kSeen = 0.005 - 0.001;  // below the table and its clearance [m]
+  constexpr double kUnseen = 0.003;        // by which the corners that are looked at may miss
+  int num_above = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const auto sample = static_cast<std::int32_t>(random.index(samples[0].size()));
+    hands::HandConfiguration configuration = hands::open_configuration(hand);
+    for (std::size_t j = 0; j < samples[0].joints.size(); ++j) {
+      configuration.q[samples[0].joints[j]] =
+          samples[0].positions(static_cast<Eigen::Index>(j), sample);
+    }
+    hands::apply_couplings(hand, configuration.q);
+    configuration.X_OH.linear() =
+        Eigen::Quaterniond(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
+                           random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0))
+            .normalized()
+            .toRotationMatrix();
+    configuration.X_OH.translation().z() = random.uniform(0.0, 0.15);
+    const double finger = lowest(configuration, false);
+    const double palm = lowest(configuration, true);
+    CAPTURE(trial, finger, palm);
+    const bool is_above = reach.is_above(0, sample, configuration.X_OH);
+    if (is_above) CHECK(finger > -kSeen - kUnseen);
+    if (finger > -kSeen) CHECK(is_above);
+    if (reach.is_palm_above(configuration.X_OH)) CHECK(palm > -kSeen - kUnseen);
+    if (palm > -kSeen) CHECK(reach.is_palm_above(configuration.X_OH));
+    num_above += is_above ? 1 : 0;
+  }
+  CHECK(num_above > 40);
+  CHECK(num_above < 360);
+  geometry::RigidTransform low = geometry::RigidTransform::Identity();
+  low.translation().z() = -1.0;
+  CHECK_FALSE(reach.is_above(0, 0, low));
   const SurroundingsCollision nothing(hand, {});
-  CHECK(internal::TableReach(hand, nothing).is_above(configuration, is_fixed));
+  CHECK(internal::TableReach(hand, nothing, {&samples[0]}).is_above(0, 0, low));
+  CHECK(internal::TableReach(hand, nothing, {&samples[0]}).is_palm_above(low));
 }
 
 TEST_CASE("Links leave the table while pads are laid", "[grasp][surface_posture]") {

@@ -4,6 +4,8 @@
 
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
+#include "graspfit/hands/contact_pad.hpp"
 #include "graspfit/hands/forward_kinematics.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "support/catch.hpp"
@@ -157,6 +159,46 @@ TEST_CASE("Every pad is a flat part of its link's mesh: a contact of the pad is 
     }
     CHECK(covered == Approx(hands::pad_area(pad)).epsilon(1e-6));
   }
+}
+
+TEST_CASE("End pads are the round ends of the fingertips, beside the paper's pads",
+          "[hands][barrett]") {
+  const HandModel ends = hands::find_hand("barrett_ends");
+  CHECK(ends.num_intrinsic_dof() == barrett().num_intrinsic_dof());
+  int num_ends = 0;
+  for (const ContactPad& pad : ends.pads) {
+    CAPTURE(pad.name);
+    if (!pad.name.ends_with("_end_pad")) {
+      const auto same =
+          std::find_if(barrett().pads.begin(), barrett().pads.end(),
+                       [&](const ContactPad& other) { return other.name == pad.name; });
+      REQUIRE(same != barrett().pads.end());
+      CHECK(same->X_LC.matrix() == pad.X_LC.matrix());
+      CHECK(same->outline == pad.outline);
+      continue;
+    }
+    ++num_ends;
+    CHECK(pad.link == ends.pads[*ends.fingers[*pad.finger].tip_pad].link);
+    // Corners of the surface are vertices of the link's cylinder, or lie on its edges.
+    const geometry::MeshQuery link(ends.links[pad.link].mesh_L);
+    std::vector<Vector3d> corners = pad.surface;
+    for (const Eigen::Vector2d& corner : pad.outline)
+      corners.emplace_back(corner.x(), corner.y(), 0);
+    for (const Vector3d& corner_C : corners) {
+      CHECK(std::abs(link.signed_distance(pad.X_LC * corner_C)) < 1e-8);
+    }
+    // So is where it touches; it leans 58 degrees from the flat pad, which lies before it.
+    CHECK(std::abs(link.signed_distance(pad.X_LC * hands::pad_contact_point_C(pad))) < 1e-8);
+    const ContactPad& flat = ends.pads[*ends.fingers[*pad.finger].tip_pad];
+    const double cosine = pad.X_LC.linear().col(2).dot(flat.X_LC.linear().col(2));
+    CHECK(std::acos(cosine) == Approx(57.6 / 180.0 * pi).margin(0.01));
+    for (const Vector3d& corner_C : corners) {
+      const Vector3d in_flat = flat.X_LC.inverse() * (pad.X_LC * corner_C);
+      CHECK(in_flat.x() > 0.026);
+      CHECK(in_flat.z() < 1e-8);
+    }
+  }
+  CHECK(num_ends == 3);
 }
 
 TEST_CASE("Pads of the Barrett hand have the stated sizes", "[hands][barrett]") {
