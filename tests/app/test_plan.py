@@ -58,7 +58,7 @@ class Plan(program.ProgramTest):
 
     def test_style_auto_says_what_the_hand_can_pinch(self):
         done = self.plan("--target-search", "reach", "--style", "auto")
-        said = re.search(r"^(\d) of 2 grasps press on the palm, (\d) with pads behind fingertips; two "
+        said = re.search(r"^(\d) of 2 grasps press on the palm, (\d) with other pads than fingertips'; two "
                          r"fingertips of barrett pinch squarely at friction 0.4 what is (\d+) to "
                          r"(\d+) mm wide", done.stdout, re.M)
         self.assertTrue(said, done.stdout)

@@ -29,7 +29,18 @@ std::string grip_text(const grasp::GraspFile& file) {
   std::string text = num_with(&grasp::Grasp::has_palm_target) + " of " +
                      std::to_string(file.grasps.size()) + " grasps press on the palm, " +
                      num_with(&grasp::Grasp::has_target_behind_tip) +
-                     " with pads behind fingertips";
+                     " with other pads than fingertips'";
+  const auto num_fingers = [](const grasp::Grasp& grasp) {
+    const auto& targets = grasp.targets.contacts;
+    return std::count_if(targets.begin(), targets.end(),
+                         [](const grasp::TargetContact& target) { return !target.is_palm; });
+  };
+  const auto& named = file.options.fingers;
+  const std::ptrdiff_t num_asked = named.empty() ? file.options.num_contacts : std::ssize(named);
+  const auto num_fewer =
+      std::count_if(file.grasps.begin(), file.grasps.end(),
+                    [&](const grasp::Grasp& grasp) { return num_fingers(grasp) < num_asked; });
+  if (num_fewer > 0) text += ", " + std::to_string(num_fewer) + " with fewer fingers than asked";
   const auto& found = file.statistics.guidance;
   const auto narrowest = found.find(std::string(grasp::kNarrowestPinch));
   const auto widest = found.find(std::string(grasp::kWidestPinch));

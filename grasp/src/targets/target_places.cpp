@@ -142,7 +142,7 @@ double TargetPlaces::edge_error(PointIndices fingers) const {
 }
 
 double TargetPlaces::rank(PointIndices points, std::optional<double> palm_misfit) const {
-  const PointIndices fingers = points.first(num_fingers());
+  const PointIndices fingers = points.first(std::min(points.size(), num_fingers()));
   double rank = edge_error(fingers) + centroid_error(points) + palm_misfit.value_or(0.0);
   if (options_.angle_weight > 0.0) {
     double sum = 0.0;

@@ -1,5 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 #include "fitting/surface_posture.hpp"
 #include "grasp/reach_options.hpp"
@@ -67,6 +69,25 @@ TEST_CASE("Hands pick up a low bar from a table, with room below them", "[grasp]
       CHECK(lowest_of(hand, grasp.pre_grasp->configuration) > 0.001);
     }
   }
+}
+
+TEST_CASE("Auto may use a finger less than asked over a table", "[grasp][table_reach]") {
+  const hands::HandModel hand = hands::find_hand("human_hand");
+  const auto sizes = [&](const Surroundings& surroundings) {
+    PlannerOptions options = reach_options(GraspStyle::Auto, 8);
+    options.num_contacts = 5;
+    options.palm = false;
+    const ObjectModel object = prepare_object(bar(), hand, options);
+    std::set<std::size_t> found;
+    for (const Grasp& grasp :
+         plan_grasps(object, hand, options, surroundings, {.num_threads = 1}).grasps) {
+      CHECK(std::isfinite(grasp.targets.rank));
+      found.insert(grasp.targets.contacts.size());
+    }
+    return found;
+  };
+  CHECK(sizes(table()).contains(4));
+  CHECK(sizes({}) == std::set<std::size_t>{5});
 }
 
 TEST_CASE("Places that no pad reaches above the table are no targets", "[grasp][table_reach]") {

@@ -57,7 +57,7 @@ struct Grasp {
   /// M > 0: the paper's meaning.
   bool is_usable() const { return quality.is_usable(); }
   bool has_palm_target() const;
-  bool has_target_behind_tip() const;  ///< Some target is for a pad behind a fingertip's.
+  bool has_target_behind_tip() const;  ///< Some target is for another pad than a tip's.
   /// Usable, penetrates nothing on the true meshes, and every requested finger/palm has contact.
   bool is_valid() const { return is_usable() && !penetration.is_any() && has_all_contacts; }
 };
