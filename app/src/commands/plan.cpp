@@ -426,7 +426,9 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
     std::optional<OutputFolder> out;
     if (flags.has("out")) {
       fs::path folder = flags.text("out");
-      if (objects.size() > 1) folder /= "rest_pose_" + std::to_string(object.record.laid->rank);
+      if (asks_for_all_rest_poses(flags)) {
+        folder /= "rest_pose_" + std::to_string(object.record.laid->rank);
+      }
       out.emplace(folder, is_plan_file);
     }
     const ExitCode found = plan_object(request, object, out);

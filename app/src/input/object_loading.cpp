@@ -9,6 +9,7 @@
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/grasp/object_difference.hpp"
+#include "graspfit/grasp/object_laid_down.hpp"
 #include "output/progress_bar.hpp"
 #include "output/text_table.hpp"
 
@@ -158,7 +159,6 @@ grasp::ObjectFile load_object(const Flags& flags, const std::string& file) {
 }
 
 std::vector<grasp::ObjectFile> load_placed_objects(const Flags& flags, const std::string& file) {
-  const std::string& wanted = flags.text("rest-pose");
   if (!flags.has("on-table") && !flags.is_default("rest-pose")) {
     throw UsageError("--rest-pose means nothing without --on-table");
   }
@@ -169,9 +169,9 @@ std::vector<grasp::ObjectFile> load_placed_objects(const Flags& flags, const std
     return objects;
   }
   require_solid(object);
-  const std::vector<geometry::LikelyRestPose> poses =
-      geometry::likely_rest_poses(object.mesh, object.record.center_of_mass_O);
-  if (wanted == "all") {
+  if (asks_for_all_rest_poses(flags)) {
+    const std::vector<geometry::LikelyRestPose> poses =
+        geometry::likely_rest_poses(object.mesh, object.record.center_of_mass_O);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       if (poses[i].probability < kLeastProbability) break;
       objects.push_back(grasp::laid_down(object, poses[i], base::as_index<int>(i + 1)));
@@ -179,13 +179,11 @@ std::vector<grasp::ObjectFile> load_placed_objects(const Flags& flags, const std
     return objects;
   }
   const int rank = flags.integer("rest-pose", base::at_least(1));
-  if (rank > std::ssize(poses)) {
-    throw UsageError("--rest-pose " + wanted + ": " + file + " has " +
-                     std::to_string(poses.size()) + " (graspfit inspect lists them)");
-  }
-  objects.push_back(grasp::laid_down(std::move(object), poses[rank - 1], rank));
+  objects.push_back(grasp::laid_down(std::move(object), rank));
   return objects;
 }
+
+bool asks_for_all_rest_poses(const Flags& flags) { return flags.text("rest-pose") == "all"; }
 
 std::string probability_text(double probability) {
   return base::plain_decimal(std::round(1e3 * probability) / 10.0) + " %";

@@ -25,6 +25,9 @@ boost::program_options::options_description surroundings_options();
 /// UsageError.
 std::vector<grasp::ObjectFile> load_placed_objects(const Flags& flags, const std::string& file);
 
+/// Whether these are all likely rest poses, be they one or more.
+bool asks_for_all_rest_poses(const Flags& flags);
+
 /// "43 %" of a rest pose's probability.
 std::string probability_text(double probability);
 

@@ -1,9 +1,9 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
-#include "graspfit/geometry/likely_rest_pose.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/geometry/named_shapes.hpp"
+#include "graspfit/grasp/object_laid_down.hpp"
 #include "graspfit/hands/hand_io.hpp"
 #include "graspfit/hands/hand_library.hpp"
 #include "graspfit/sweep/data_files.hpp"
@@ -70,13 +70,7 @@ void turn(const ObjectSettings& settings, grasp::ObjectFile& object) {
 void lay_down(const ObjectSettings& settings, grasp::ObjectFile& object) {
   if (!settings.rest_pose) return;
   object.record.center_of_mass_O = geometry::mass_properties(object.mesh).center_of_mass;
-  const std::vector<geometry::LikelyRestPose> poses =
-      geometry::likely_rest_poses(object.mesh, object.record.center_of_mass_O);
-  if (*settings.rest_pose > std::ssize(poses)) {
-    throw base::InvalidInput(object.record.file + ": has " + std::to_string(poses.size()) +
-                             " rest poses, not " + std::to_string(*settings.rest_pose));
-  }
-  object = grasp::laid_down(std::move(object), poses[*settings.rest_pose - 1], *settings.rest_pose);
+  object = grasp::laid_down(std::move(object), *settings.rest_pose);
 }
 
 /// The file that a cell's object comes from; none for a shape or where it is not there.

@@ -8,6 +8,7 @@
 #include "graspfit/base/sha256.hpp"
 #include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
+#include "graspfit/grasp/object_laid_down.hpp"
 
 namespace graspfit::grasp {
 namespace {
@@ -107,6 +108,17 @@ ObjectFile laid_down(ObjectFile object, const geometry::LikelyRestPose& pose, in
   record.analysis.box = geometry::bounding_box(object.mesh);
   record.normalizing_radius = contact::normalizing_radius(record.analysis.box);
   return object;
+}
+
+ObjectFile laid_down(ObjectFile object, int rank) {
+  const std::vector<geometry::LikelyRestPose> poses =
+      geometry::likely_rest_poses(object.mesh, object.record.center_of_mass_O);
+  if (rank < 1 || rank > std::ssize(poses)) {
+    throw base::InvalidInput(object.record.file + ": there is no rest pose " +
+                             std::to_string(rank) + " among its " + std::to_string(poses.size()) +
+                             " (graspfit inspect lists them)");
+  }
+  return laid_down(std::move(object), poses[rank - 1], rank);
 }
 
 geometry::TriangleMesh read_object(const ObjectRecord& record, const std::filesystem::path& file) {

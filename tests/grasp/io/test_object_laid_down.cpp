@@ -6,6 +6,7 @@
 #include "graspfit/geometry/mesh_io.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
+#include "graspfit/grasp/object_laid_down.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -56,6 +57,19 @@ TEST_CASE("An object that is laid down stands on z = 0 over the origin", "[grasp
     CHECK((laid.record.laid->X_OF() * X_FB).isApprox(X_OB, 1e-12));
     CHECK(object.record.in_file_frame(X_OB).matrix() == X_OB.matrix());
     CHECK_THROWS_AS(grasp::laid_down(laid, poses[0], 1), base::InvalidInput);
+  }
+}
+
+TEST_CASE("An object has no rest pose beyond its last", "[grasp][object_file]") {
+  const TemporaryFolder folder;
+  const grasp::ObjectFile object = box_somewhere(folder);
+  const grasp::ObjectFile last = grasp::laid_down(object, 6);
+  CHECK(last.mesh == grasp::laid_down(object, poses_of(object)[5], 6).mesh);
+  CHECK(last.record.laid->rank == 6);
+  for (const int rank : {0, 7}) {
+    CHECK_THROWS_WITH(grasp::laid_down(object, rank),
+                      testing::EndsWith("box.off: there is no rest pose " + std::to_string(rank) +
+                                        " among its 6 (graspfit inspect lists them)"));
   }
 }
 
