@@ -6,12 +6,10 @@
 #include <tuple>
 #include <vector>
 
-#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/units.hpp"
 #include "graspfit/geometry/everyday_shapes.hpp"
 #include "shapes/implicit_surface.hpp"
 #include "shapes/shape_dimensions.hpp"
-#include "voxel/block.hpp"
 
 namespace graspfit::geometry {
 namespace {
@@ -396,62 +394,6 @@ TriangleMesh wire_cage(const WireCageDimensions& d, int segments) {
     solid.extreme_points.emplace_back(half[0], 0.0, side < 0 ? 0.0 : d.height);
   }
   return polygonize(solid, pi * d.bar_diameter / segments);
-}
-
-void TableDimensions::validate() const {
-  const char* const shape = "table";
-  require_positive(shape, *this, internal::kTableFields);
-  require_below(shape, "top_thickness", top_thickness, height, "height");
-  require_below(shape, "leg_width", leg_width, 0.5 * std::min(length, width) - leg_inset,
-                "what leg_inset leaves of half of length and of width");
-}
-
-TriangleMesh table(const TableDimensions& d) {
-  d.validate();
-  // The boundary of the solid cells of a grid of 5 × 5 × 2.
-  const auto planes = [&](double extent) {
-    const double outer = 0.5 * extent;
-    const double leg = outer - d.leg_inset;
-    const double inner = leg - d.leg_width;
-    return std::array<double, 6>{-outer, -leg, -inner, inner, leg, outer};
-  };
-  const auto x = planes(d.length);
-  const auto y = planes(d.width);
-  const std::array<double, 3> z = {0.0, d.height - d.top_thickness, d.height};
-  const auto is_solid = [](const Eigen::Vector3i& cell) {
-    if ((cell.array() < 0).any() || cell[0] > 4 || cell[1] > 4 || cell[2] > 1) return false;
-    return cell[2] == 1 || (cell[0] % 2 == 1 && cell[1] % 2 == 1);
-  };
-  TriangleMesh mesh;
-  std::array<std::int32_t, 6 * 6 * 3> index;
-  index.fill(-1);
-  const auto vertex = [&](const Eigen::Vector3i& p) {
-    std::int32_t& i = index[p[0] + 6 * (p[1] + 6 * p[2])];
-    if (i < 0) {
-      i = base::as_index<std::int32_t>(mesh.vertices.size());
-      mesh.vertices.emplace_back(x[p[0]], y[p[1]], z[p[2]]);
-    }
-    return i;
-  };
-  internal::for_each_in_block({0, 0, 0}, {4, 4, 1}, [&](const Eigen::Vector3i& cell) {
-    if (!is_solid(cell)) return;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3i step = Eigen::Vector3i::Unit(axis);
-      Eigen::Vector3i u = Eigen::Vector3i::Unit((axis + 1) % 3);
-      Eigen::Vector3i v = Eigen::Vector3i::Unit((axis + 2) % 3);
-      for (const int side : {0, 1}) {
-        if (is_solid(cell + (2 * side - 1) * step)) continue;
-        const Eigen::Vector3i low = cell + side * step;
-        if (side == 0) std::swap(u, v);
-        const std::int32_t a = vertex(low);
-        const std::int32_t c = vertex(low + u + v);
-        mesh.faces.push_back({a, vertex(low + u), c});
-        mesh.faces.push_back({a, c, vertex(low + v)});
-        if (side == 0) std::swap(u, v);
-      }
-    }
-  });
-  return mesh;
 }
 
 }  // namespace graspfit::geometry

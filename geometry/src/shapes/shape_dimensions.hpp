@@ -69,6 +69,9 @@ inline constexpr std::array kWireCageFields = {GRASPFIT_FIELD(WireCageDimensions
                                                GRASPFIT_FIELD(WireCageDimensions, bar_diameter),
                                                GRASPFIT_FIELD(WireCageDimensions, corner_radius),
                                                GRASPFIT_FIELD(WireCageDimensions, fillet)};
+inline constexpr std::array kBinFields = {
+    GRASPFIT_FIELD(BinDimensions, inner_length), GRASPFIT_FIELD(BinDimensions, inner_width),
+    GRASPFIT_FIELD(BinDimensions, inner_height), GRASPFIT_FIELD(BinDimensions, wall_thickness)};
 inline constexpr std::array kTableFields = {
     GRASPFIT_FIELD(TableDimensions, length),    GRASPFIT_FIELD(TableDimensions, width),
     GRASPFIT_FIELD(TableDimensions, height),    GRASPFIT_FIELD(TableDimensions, top_thickness),

@@ -10,6 +10,7 @@
 #include "graspfit/geometry/everyday_shapes.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/mesh_analysis.hpp"
+#include "graspfit/geometry/mesh_query.hpp"
 #include "graspfit/geometry/named_shapes.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "support/catch.hpp"
@@ -118,6 +119,8 @@ TEST_CASE("Everyday shapes are closed, outward, free of crossings and of their g
     CHECK((box.max() - shape.high).cwiseAbs().maxCoeff() <= kUlps);
     CHECK(named_shape(shape.name) == mesh);  // It is built again with the same bytes.
   }
+  check_solid(bin(), 0);
+  CHECK(named_shape("bin") == bin());
   check_solid(table(), 0);
   CHECK(named_shape("table") == table());
 }
@@ -182,6 +185,49 @@ TEST_CASE("Volumes of turned shapes are those of their cones", "[geometry][every
         Approx(frustum(outer(0), outer(0.1), 0.1) + frustum(0.075, 0.075, 0.03) -
                frustum(outer(0.006) - 0.006, 0.065, 0.124))
             .epsilon(1e-7));
+}
+
+TEST_CASE("A bin is its floor and its four sides", "[geometry][everyday_shapes]") {
+  const auto agree = [](double length, double width, double height, double wall,
+                        const TriangleMesh& mesh) {
+    const double outer_length = length + 2 * wall;
+    const double outer_width = width + 2 * wall;
+    CHECK(signed_volume(mesh) ==
+          Approx(outer_length * outer_width * (height + wall) - length * width * height)
+              .epsilon(1e-13));
+    // From above and from below the same area is seen, from the sides the outside and the inside.
+    CHECK(surface_area(mesh) ==
+          Approx(2 * outer_length * outer_width +
+                 2 * (outer_length + outer_width) * (height + wall) + 2 * (length + width) * height)
+              .epsilon(1e-13));
+    const MeshQuery query(mesh);
+    const auto is_solid = [&](double x, double y, double z) {
+      return query.containment({x, y, z}) == Containment::Inside;
+    };
+    const double half = 0.5 * wall;
+    CHECK(is_solid(0, 0, -half));
+    for (const double side : {-1.0, 1.0}) {
+      CHECK(is_solid(side * (0.5 * length + half), 0, 0.5 * height));
+      CHECK(is_solid(0, side * (0.5 * width + half), 0.5 * height));
+      CHECK_FALSE(is_solid(side * (0.5 * length - half), 0, 0.5 * height));
+      CHECK_FALSE(is_solid(0, side * (0.5 * width - half), 0.5 * height));
+    }
+    CHECK_FALSE(is_solid(0, 0, half));
+    CHECK_FALSE(is_solid(0, 0, height));
+  };
+  agree(0.346, 0.265, 0.12, 0.003, bin());
+  agree(0.2, 0.3, 0.5, 0.04, bin({0.2, 0.3, 0.5, 0.04}));
+  CHECK(bin().faces.size() == 92);
+  // All sides of this one are sums of few powers of two, and so exact.
+  const TriangleMesh mesh = bin({0.5, 0.25, 0.125, 0.0625});
+  for (const double x : {-0.3125, -0.25, 0.25, 0.3125}) {
+    for (const double y : {-0.1875, -0.125, 0.125, 0.1875}) {
+      for (const double z : {-0.0625, 0.0, 0.125}) {
+        CAPTURE(x, y, z);
+        CHECK(std::count(mesh.vertices.begin(), mesh.vertices.end(), Vector3d(x, y, z)) == 1);
+      }
+    }
+  }
 }
 
 TEST_CASE("A table is its top and its legs", "[geometry][everyday_shapes]") {

@@ -154,6 +154,20 @@ struct WireCageDimensions {
 /// Edges are about 1/`segments` of a bar's circumference long.
 TriangleMesh wire_cage(const WireCageDimensions& dimensions = {}, int segments = 10);
 
+/// An open box around the z axis to pick things out of, five walls with sharp edges: a floor whose
+/// upper side is at z = 0, so that what stands on z = 0 stands in the bin, and four sides. Its 92
+/// faces have corners that are exact to rounding. Genus 0. Default: about the inside of a Euro
+/// container (small load carrier) with a footprint of 400 mm x 300 mm, without ribs and rim.
+struct BinDimensions {
+  double inner_length = 0.346;    ///< Along x, between the walls.
+  double inner_width = 0.265;     ///< Along y, between the walls.
+  double inner_height = 0.120;    ///< From the floor's upper side to the rim.
+  double wall_thickness = 0.003;  ///< Thickness of the four sides and of the floor.
+  void validate() const;          ///< Throws InvalidInput.
+};
+
+TriangleMesh bin(const BinDimensions& dimensions = {});
+
 /// A table on z = 0 around the z axis: a box on four square legs, all edges sharp, 172 faces whose
 /// corners are exact to rounding. Genus 0.
 struct TableDimensions {
