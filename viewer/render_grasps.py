@@ -6,7 +6,7 @@ posed links (`o link NAME`), in meters, in the object frame O. Each picture show
 palm direction and facing the contact polygon, and its pre-grasp, if it has one, across the palm direction;
 all in parallel projection, so that the scale bar holds everywhere. Of an object that is much larger than
 the hand, the views of the grasp show what is near the hand, that of the pre-grasp all. Table and
-obstacles (DIR/obstacle_1.ply, ...) are shown. Pictures are written under a temporary name and renamed.
+obstacles (DIR/obstacle_1.ply, ...) are seen through. Pictures are written under a temporary name and renamed.
 
 Uses Debian's python3-vtk9, under xvfb-run where that is installed. Exit code 1 with one line on bad
 input or a missing program.
@@ -36,6 +36,7 @@ from vtk_picture import (  # noqa: E402
 
 BOTTOM, TOP = 0.115, 0.9  # of the two views, as parts of the picture's height
 LYING = 0.3  # Upward part of the normal of a polygon that a table hides from below.
+SEEN_THROUGH = 0.45  # Opacity of what stands around.
 MUCH_LARGER = 2.5  # An object so many times the size of the hand is not shown whole.
 ROUNDED_EPSILON = 1e-9  # Contacts that are opposite each other but for rounding close with less.
 
@@ -365,6 +366,7 @@ class Painter(Canvas):
             reader = self.vtk.vtkPLYReader()
             reader.SetFileName(str(file))
             made.append(self.actor(reader, COLORS["surroundings"]))
+            made[-1].GetProperty().SetOpacity(SEEN_THROUGH)  # A bin's walls hide the hand in it.
         if self.scene["table_z"] is not None:
             made.append(self.table(next(v for name, v, _ in parts if name == "object")))
         return made
@@ -383,7 +385,7 @@ class Painter(Canvas):
         ]
         sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
         table = self.solid(corners, [[3, 2, 1, 0], [4, 5, 6, 7], *sides], "surroundings", specular=0.0)
-        table.GetProperty().SetOpacity(0.45)
+        table.GetProperty().SetOpacity(SEEN_THROUGH)
         return table
 
     def contact_marks(self, grasp, size):

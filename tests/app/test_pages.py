@@ -19,6 +19,7 @@ ELSEWHERE = (
     r"cmake --(preset release|install build/release) ",    # .ci/run, tests/repository
     r"paper-figures/make\b",                               # tests/paper_figures
     r"graspfit (hand|shape|plan) .*\b(claw|ball)\b",       # test_own_hand.py
+    r"graspfit (shape|plan|evaluate) .*(\bbin|_bin)\b",     # test_table.py
     r"graspfit experiment run .* --(jobs|shard|publish)",  # test_experiment.py: shards, columns
     r"graspfit experiment run .* --(set|object) ",         # test_experiment_data.py: own objects
     r"graspfit experiment (merge|status|verify) ",         # test_experiment.py: shards

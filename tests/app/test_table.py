@@ -1,6 +1,13 @@
-"""Tests of planning on a table."""
+"""Tests of planning on a table and in a bin."""
+
+import csv
+import json
+import re
+import shlex
 
 import program
+
+README = program.SOURCE_DIR / "app/README.md"
 
 
 class RestPoses(program.ProgramTest):
@@ -19,6 +26,57 @@ class RestPoses(program.ProgramTest):
     def test_a_pose_that_there_is_not_is_refused(self):
         self.assert_refused("plan", self.write_torus(), "--on-table", "--rest-pose", "9", says=[
             "torus.off: there is no rest pose 9 among its 2 (graspfit inspect lists them)"])
+
+
+class Bin(program.ProgramTest):
+    def hand_vertices(self, path):
+        """Returns the vertices of the hand in a posed scene."""
+        text = path.read_text()
+        return [[float(x) for x in line.split()[1:]]
+                for line in text[text.index("o link"):].splitlines() if line.startswith("v ")]
+
+    def test_the_page_plans_out_of_a_bin(self):
+        text = README.read_text(encoding="utf-8")
+        chapter = re.search(r"(?ms)^## Out of a bin$(.*?)^## ", text).group(1)
+        (script,) = re.findall(r"(?ms)^```sh\n(.*?)^```$", chapter)
+        commands = [shlex.split(line, comments=True) for line in script.splitlines()]
+        self.assertGreaterEqual(len(commands), 4)
+        for command in commands:
+            with self.subTest(command):
+                self.assertEqual(command[0], "graspfit")
+                done = program.run(*command[1:], cwd=self.folder)
+                self.assertEqual(done.returncode, 0, done.stderr)
+        out = self.folder / "mug_in_bin"
+        self.assertIn("obstacle", (out / "grasps.html").read_text())
+        file = json.loads((out / "grasps.json").read_text())
+        obstacle, = file["surroundings"]["obstacles"]
+        self.assertEqual(obstacle["file"], "bin.off")
+        self.assertEqual(file["surroundings"]["table_z_O_m"], 0)
+
+        # The object stands in the bin, between its walls.
+        inner = {"x": 0.346 / 2, "y": 0.265 / 2}
+        box = file["object"]["mesh"]["bounding_box_m"]
+        self.assertAlmostEqual(box["lower"][2], 0, places=12)
+        for axis, half in enumerate(inner.values()):
+            self.assertLess(max(-box["lower"][axis], box["upper"][axis]), half)
+
+        # So is the hand, at the grasp by its vertices, on the way there by what is measured.
+        with open(out / "grasps.csv", newline="", encoding="utf-8") as table:
+            rows = list(csv.DictReader(table))
+        self.assertGreaterEqual(len(rows), 1)
+        for rank, row in enumerate(rows, 1):
+            for x, y, z in self.hand_vertices(out / f"grasp_{rank:03}.obj"):
+                self.assertGreater(z, 0.001)
+                if z < 0.1:
+                    self.assertLess(abs(x), inner["x"])
+                    self.assertLess(abs(y), inner["y"])
+            self.assertGreaterEqual(float(row["pre_grasp_clearance_m"]), 0.005)
+        # By exact queries too, from the files.
+        self.assertEqual(commands[-1][1], "evaluate")
+        lines = done.stdout.splitlines()
+        valid = lines[0].split().index("valid") - lines[0].split().index("rank") - 2
+        for line in lines[1:1 + len(rows)]:
+            self.assertEqual(line.split()[valid], "yes", done.stdout)
 
 
 if __name__ == "__main__":
