@@ -1,4 +1,4 @@
-"""Tests of planning on a table and in a bin."""
+"""Tests of planning on a table, in a bin, and of what is said where nothing is found there."""
 
 import csv
 import json
@@ -77,6 +77,33 @@ class Bin(program.ProgramTest):
         valid = lines[0].split().index("valid") - lines[0].split().index("rank") - 2
         for line in lines[1:1 + len(rows)]:
             self.assertEqual(line.split()[valid], "yes", done.stdout)
+
+    def test_walls_stop_the_hand(self):
+        # The hand is wider than this bin, and the ball lies deep in it.
+        self.assertEqual(program.run("shape", "bin", "--set", "inner_length=0.1,inner_width=0.1,inner_height=0.3",
+                                     "--out", self.folder / "bin.off").returncode, 0)
+        self.assertEqual(program.run("shape", "ball", "--out", self.folder / "round.off").returncode, 0)
+        message = self.assert_refused(
+            "plan", self.folder / "round.off", "--preset", "strong", "--on-table", "--obstacle",
+            self.folder / "bin.off", "--max-attempts", "2", code=3)
+        self.assertRegex(message, r"2 of 2 attempts: .*more room to the obstacles")
+
+
+class NoGrasp(program.ProgramTest):
+    def test_it_is_said_what_stopped_most_and_what_would_help(self):
+        # A plate of 12 mm, beside which fingers cannot lie.
+        plate = self.write("plate.off", program.off_text(*program.box(0.2, 0.15, 0.012)))
+        message = self.assert_refused(
+            "plan", plate, "--preset", "strong", "--on-table", "--max-attempts", "3", code=3)
+        self.assertRegex(message, r"; 3 of 3 attempts: .* or another --hand\n$")
+        self.assertIn("the object raised or tilted (it is 12 mm high, and the fingertips are ", message)
+        self.assertIn("a smaller --table-clearance-mm (now 1)", message)
+        self.assertIn("more --max-attempts (now 3)", message)
+        message = self.assert_refused(
+            "plan", plate, "--preset", "strong", "--on-table", "--max-attempts", "3", "--approach",
+            "0,0,-1", "--approach-angle-deg", "20", "--table-clearance-mm", "0", code=3)
+        self.assertIn("a wider --approach-angle-deg (now 20)", message)
+        self.assertNotIn("--table-clearance", message)
 
 
 if __name__ == "__main__":

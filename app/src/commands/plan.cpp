@@ -317,6 +317,7 @@ ExitCode plan_object(const PlanRequest& request, const grasp::ObjectFile& object
   const grasp::ObjectModel object =
       grasp::prepare_object(object_file.mesh, hand, options, {.is_on = true});
   grasp::PlannerResult result;
+  bool is_reach_tried = false;
   {
     const StopOnInterrupt stop(
         "graspfit plan: interrupted: the attempts under way are finished; once more ends at once");
@@ -328,6 +329,7 @@ ExitCode plan_object(const PlanRequest& request, const grasp::ObjectFile& object
     };
     result = planned();
     if (result.grasps.empty() && !interrupt_heard() && is_search_of_default(flags, options)) {
+      is_reach_tried = true;
       if (options.style == grasp::GraspStyle::Auto) options.style = grasp::GraspStyle::Precision;
       options.targets.search = grasp::TargetSearch::Random;
       result = planned();
@@ -344,7 +346,10 @@ ExitCode plan_object(const PlanRequest& request, const grasp::ObjectFile& object
 
   if (result.grasps.empty()) {
     const std::string accepted(grasp::name_of(options.acceptance));
-    const std::string advice = no_grasp_advice(result, options, object.mesh(), request.hand);
+    const bool is_in_one_rest_pose = object_file.record.laid && !asks_for_all_rest_poses(flags);
+    const std::string advice =
+        no_grasp_advice({result, options, object.mesh(), request.hand, around.surroundings,
+                         is_in_one_rest_pose, is_reach_tried});
     std::fprintf(stderr, "graspfit plan: %s: no %s grasp by hand %s %s%s%s\n", name.c_str(),
                  accepted.c_str(), hand.name.c_str(), attempts_text(result).c_str(),
                  advice.empty() ? "" : "; ", advice.c_str());
