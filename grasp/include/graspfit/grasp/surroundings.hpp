@@ -55,7 +55,9 @@ class SurroundingsCollision {
   bool touches(const hands::HandCollision& collision, int link,
                const hands::RigidTransform& X_OL) const;
 
-  /// The corners of a link's convex hull; there are none without a table.
+  /// The corners of a link's convex hull.
+  /// @throws std::out_of_range without a table, for which they are computed, and for a link that
+  /// the hand does not have.
   const std::vector<Eigen::Vector3d>& corners_L(int link) const { return corners_L_.at(link); }
 
   /// The lowest corner of a link's convex hull over the table.
