@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "approach/way_up.hpp"
 #include "fitting/idle_fingers.hpp"
 #include "grasp/grasp_measure.hpp"
 #include "graspfit/base/stopwatch.hpp"
@@ -387,9 +388,13 @@ AttemptResult PlannerAttempts::with_way_in(AttemptResult result) const {
       pre_grasp.open_neutral = true;
       pre_grasp.leave_pressing = true;
     }
-    grasp.pre_grasp =
-        find_pre_grasp({hand_, fitting_hand_.collision(), object_.query, surroundings_},
-                       hands::PosedConfiguration{grasp.configuration, result.X_OL}, pre_grasp);
+    const PreGraspScene around{hand_, fitting_hand_.collision(), object_.query, surroundings_};
+    const hands::PosedConfiguration posed{grasp.configuration, result.X_OL};
+    grasp.pre_grasp = find_pre_grasp(around, posed, pre_grasp);
+    // What is picked up from a table goes up.
+    if (surroundings_.surroundings().table_z_O && !is_way_up_free(around, posed)) {
+      grasp.pre_grasp.reset();
+    }
   }
   if (grasp.is_valid() && options_.pre_grasps && !grasp.pre_grasp) {
     result.outcome = AttemptOutcome::NoWayIn;
