@@ -153,7 +153,7 @@ class Reach(program.ProgramTest):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("parallel_gripper at friction 0.4: pads may lean by 21.8 degrees", done.stdout)
         self.assertRegex(done.stdout, r"fingertips +0 to 85 +0\.0 ")
-        self.assertRegex(done.stdout, r"proximal pads +no such pads +- +- +-")
+        self.assertRegex(done.stdout, r"other pads +no such pads +- +- +-")
         rows = [row for row in csv.DictReader(files["csv"].read_text().splitlines())
                 if row["pinch"] == "fingertips"]
         self.assertEqual(len(rows), 18)  # classes of 5 mm to 85 mm, that of 85 to 90 included

@@ -224,7 +224,7 @@ std::string pinch_name(PinchKind kind) {
     case PinchKind::Palm:
       return "fingertip and palm";
     case PinchKind::Proximal:
-      return "proximal pads";
+      return "other pads";
   }
   return "";
 }

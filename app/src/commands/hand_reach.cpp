@@ -31,7 +31,8 @@ Command reach_command() {
       "Shows what a hand, a shipped name or a file, can pinch squarely: how much its pads must "
       "lean\n"
       "to the line between them, by the width of what is between them, for fingertips, for the\n"
-      "thumb against two fingers, for a fingertip against the palm, and for proximal pads.\n",
+      "thumb against two fingers, for a fingertip against the palm, and for other pads:\n"
+      "proximal ones, and fingers' ends.\n",
       option_group("Options"),
       "Kinematics alone: no object, no links in one another. What leans by more than the angle of\n"
       "friction slips off parallel faces. Widths are those that were found: up to a step more may\n"

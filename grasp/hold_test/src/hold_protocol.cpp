@@ -66,8 +66,8 @@ HoldProtocol tabletop_lift() {
   protocol.source =
       "DexGraspBench (eval_func/tabletop_mocap.py): 10 N/kg from the start, 0.1 m up in 0.4 s, 5 "
       "cm and 15 degrees. Ours: the base on a slide instead of a mocap body, the table at the "
-      "object's lowest point along z of O, 0.6 s held after lifting. The rest as "
-      "dexgraspbench-100g";
+      "object's lowest point along z of O, on which the corners of its hull up to 1 mm higher "
+      "stand beside its pieces, 0.6 s held after lifting. The rest as dexgraspbench-100g";
   protocol.load = HoldLoad::Lift;
   protocol.gravity = 10.0;
   protocol.hold_time = 1.0;
