@@ -32,7 +32,7 @@ struct Pinch {
     grasp = hands::open_configuration(hand);
     grasp.q.setConstant(0.021);
     grasp.X_OH.linear() = Vector3d(1.0, -1.0, -1.0).asDiagonal();
-    grasp.X_OH.translation().z() = 0.062;
+    grasp.X_OH.translation().z() = 0.072;  // above what it stands on
   }
   double top() const {
     double z = 0.0;
