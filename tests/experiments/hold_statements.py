@@ -6,7 +6,7 @@ One function per section yields sentences and rows of tables, each as it must st
 from results_statements import percent
 from scipy import stats
 
-HANDS = {"gripper": "gripper", "barrett": "Barrett", "human": "human hand", "allegro": "Allegro", "shadow": "Shadow"}
+HANDS = {"gripper": "gripper", "barrett": "Barrett", "barrett_ends": "Barrett with end pads", "human": "human hand", "allegro": "Allegro", "shadow": "Shadow"}
 KINDS = {"precision": "precision", "power": "power", "four": "precision, four fingers"}
 OBJECTS = {"buddha_head": "Buddha's head", "max_planck": "Max Planck"}
 OUTCOMES = {
@@ -88,6 +88,49 @@ def hold_default(tables):
         named = ", ".join(f"{object_name(row['object'])} {row['normal_held']}" for _, row in few.iterrows())
         yield f"{HANDS[grip]}: {named or 'none'}"
     yield from lost_attempts(rows)
+
+
+LEAST_HEIGHT = 0.03  # of objects that count [m]
+
+
+def cells_from_table(tables):
+    """Returns the cells that were planned, with what of each is held in both tests, and those that were not."""
+    table = tables.table("from_table")
+    table["plan_s"] = tables.table("from_table.timing")["plan_s"]
+    key = ["object", "rest_pose", "grip"]
+    details = tables.table("from_table.details")
+    details["both"] = (details["normal_stage"] == "held") & (details["lift_stage"] == "held")
+    details["closed"] = details["force_closure"] == 1
+    table = table.merge(details.groupby(key)[["both", "closed"]].sum().reset_index(), on=key, how="left")
+    return table[table["status"] == "ok"].fillna({"both": 0, "closed": 0}), table[table["status"] != "ok"]
+
+
+def from_table(tables):
+    table, refused = cells_from_table(tables)
+    counted = table[table["height_m"] >= LEAST_HEIGHT]
+    for grip, group in counted.groupby("grip", sort=False):
+        attempts = int(group["attempts"].sum())
+        both = int(group["both"].sum())
+        sums = " | ".join(str(int(group[name].sum())) for name in ("valid", "closed", "lift_held", "normal_held"))
+        yield (f"| {HANDS[grip]} | {len(group)} | {attempts} | {sums} | {both} ({percent(both / attempts)}, {interval(both, attempts)}) "
+               f"| {group['plan_s'].sum() / attempts:.2f} |")
+    for grip, group in counted.groupby("grip", sort=False):
+        few = group[group["both"] <= group["attempts"] / 2].sort_values("both", kind="stable")
+        named = ", ".join(f"{table_object(row)} {int(row['both'])}" for _, row in few.iterrows())
+        yield f"- {HANDS[grip]}: {named or 'none'}"
+    low = table[table["height_m"] < LEAST_HEIGHT]
+    for (name, pose), group in low.groupby(["object", "rest_pose"], sort=False):
+        held = ", ".join(f"{HANDS[row['grip']]} {int(row['both'])}" for _, row in group.iterrows())
+        yield f"{table_object({'object': name, 'rest_pose': pose})} ({1000 * group['height_m'].iloc[0]:.0f} mm): {held}"
+    for (name, grip), group in refused.groupby(["object", "grip"], sort=False):
+        yield f"{object_name(name)} and {HANDS[grip]}, {len(group)} poses"
+    multidex = counted[counted["object"].str.startswith("multidex_")].groupby("grip", sort=False)[["both", "attempts"]].sum()
+    yield ", ".join(f"{HANDS[grip]} {percent(row['both'] / row['attempts'])}" for grip, row in multidex.iterrows())
+    yield from lost_attempts(table)
+
+
+def table_object(row):
+    return f"{object_name(row['object'].removeprefix('multidex_'))} in pose {row['rest_pose']}"
 
 
 def lowest_and_highest(rows):
@@ -184,6 +227,10 @@ def at_a_glance(tables):
     sums = rows.groupby("grip", sort=False)[["normal_held", "hard_held", "attempts"]].sum()
     for protocol in ("normal", "hard"):
         yield ", ".join(f"{HANDS[grip]} {percent(row[f'{protocol}_held'] / row['attempts'])}" for grip, row in sums.iterrows())
+    table, _ = cells_from_table(tables)
+    sums = table[table["height_m"] >= LEAST_HEIGHT].groupby("grip", sort=False)[["both", "attempts"]].sum()
+    yield ", ".join(f"{HANDS[grip]} {percent(row['both'] / row['attempts'])}" for grip, row in sums.iterrows())
+    yield f"of {int(sums['attempts'].sum())} attempts at objects at their own sizes"
     rows = tables.table("hold_rates")[lambda table: table["grip"] == "allegro_precision"]
     attempts = int(rows["attempts"].sum())
     yield f"{percent(rows['normal_held'].sum() / attempts)} of {attempts} attempts end in a fingertip grasp of the Allegro hand"

@@ -44,6 +44,10 @@ SECTIONS = {
         hold_statements.hold_default,
         (*PROTOCOLS, r"256 per hand", r"μ = 0\.4", r"95 % interval", r"8 attempts"),
     ),
+    "## How many are picked up from a table": (
+        hold_statements.from_table,
+        (*PROTOCOLS, r"(of |: |the )20 (attempts|each)", r"95 % interval", r"100 g", r"0\.1 m", r"30 mm", r"1\.5 m", r"1 N", r"160 mm", r"85 mm", r"60 mm", r"50 to 75°"),
+    ),
     "## What predicts that a grasp holds": (
         hold_statements.hold_prediction,
         (*PROTOCOLS, r"12 objects", r"\(0\.5: says nothing\)", r"95 % intervals"),
