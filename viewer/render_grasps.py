@@ -21,6 +21,7 @@ import sys
 sys.dont_write_bytecode = True  # the folder may be the sources' or root's
 from vtk_picture import (  # noqa: E402
     COLORS,
+    SEEN_THROUGH,
     SUPERSAMPLING,
     BadInput,
     Canvas,
@@ -36,7 +37,6 @@ from vtk_picture import (  # noqa: E402
 
 BOTTOM, TOP = 0.115, 0.9  # of the two views, as parts of the picture's height
 LYING = 0.3  # Upward part of the normal of a polygon that a table hides from below.
-SEEN_THROUGH = 0.45  # Opacity of what stands around.
 MUCH_LARGER = 2.5  # An object so many times the size of the hand is not shown whole.
 ROUNDED_EPSILON = 1e-9  # Contacts that are opposite each other but for rounding close with less.
 
@@ -368,25 +368,8 @@ class Painter(Canvas):
             made.append(self.actor(reader, COLORS["surroundings"]))
             made[-1].GetProperty().SetOpacity(SEEN_THROUGH)  # A bin's walls hide the hand in it.
         if self.scene["table_z"] is not None:
-            made.append(self.table(next(v for name, v, _ in parts if name == "object")))
+            made.append(self.table(next(v for name, v, _ in parts if name == "object"), self.scene["table_z"]))
         return made
-
-    def table(self, object_vertices):
-        """The part of the table around the object, seen through."""
-        spans = [(min(v[k] for v in object_vertices), max(v[k] for v in object_vertices)) for k in (0, 1)]
-        margin = 0.75 * max(high - low for low, high in spans)
-        (x_low, x_high), (y_low, y_high) = [(low - margin, high + margin) for low, high in spans]
-        z = self.scene["table_z"]
-        # A slab, since views across a palm that looks down see a plane edge on.
-        corners = [
-            (x, y, top)
-            for top in (z - 0.03 * margin, z)
-            for x, y in ((x_low, y_low), (x_high, y_low), (x_high, y_high), (x_low, y_high))
-        ]
-        sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
-        table = self.solid(corners, [[3, 2, 1, 0], [4, 5, 6, 7], *sides], "surroundings", specular=0.0)
-        table.GetProperty().SetOpacity(SEEN_THROUGH)
-        return table
 
     def contact_marks(self, grasp, size):
         """Where the contacts will be."""

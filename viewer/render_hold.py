@@ -41,6 +41,7 @@ FRAME_TIME = 0.04  # of the test per frame of the picture [s]
 SLOWNESS = 2.0  # of the picture, over real time
 AFTERWARDS = 0.2  # shown after a limit was passed [s]
 LAST_FRAME = 2.0  # how long the last frame stays [s]
+ABOVE_TABLE = 0.35  # of the eye, over its distance along the table
 ARROW = 0.55  # length of the load's arrow, over the object's diagonal
 
 
@@ -108,7 +109,10 @@ class Painter(Canvas):
         solids = [
             actor for actor in self.body_actors if actor.GetMapper().GetInputAlgorithm() is not None
         ]
-        self.add_view(window, frame, camera, solids, list)
+        around = []
+        if self.scene["table_z"] is not None:
+            around.append(self.table(self.scene["object"]["vertices"], self.scene["table_z"]))
+        self.add_view(window, frame, camera, [*solids, *around], list)
         renderers = window.GetRenderers()
         self.shaded, self.above = (renderers.GetItemAsObject(i) for i in (0, 1))
         self.add_axes(window, (0.004, CHART / self.height), camera)
@@ -123,12 +127,14 @@ class Painter(Canvas):
         return self.load["link_poses"][frame * self.num_links + body - 1]
 
     def side(self):
-        """Toward the eye: across palm direction and load, a little from the palm's front."""
+        """Toward the eye: across palm direction and load, a little from the palm's front or above a table."""
         palm = self.scene["hand"]["palm"]
         direction = unit(rotated(self.pose(0, 1 + palm["link"]), palm["direction"]))
         across = unit(cross(direction, self.load["direction"]))
         if across is None or abs(sum(x * y for x, y in zip(direction, self.load["direction"]))) > 0.98:
             across = perpendicular(direction)
+        if self.scene["table_z"] is not None:
+            return unit(along([across[0], across[1], 0.0], [0.0, 0.0, 1.0], ABOVE_TABLE))
         return unit(along(across, direction, 0.25))
 
     def points_in_view(self):

@@ -26,6 +26,7 @@ COLORS = {
     "soft": (0.40, 0.44, 0.47),
 }
 SUPERSAMPLING = 2  # each way; smooths every edge, whatever the graphics driver offers
+SEEN_THROUGH = 0.45  # Opacity of what stands around.
 UNDER_XVFB = "GRASPFIT_UNDER_XVFB"
 
 
@@ -127,6 +128,22 @@ class Canvas:
         renderer.InteractiveOff()
         window.AddRenderer(renderer)
         return renderer
+
+    def table(self, object_vertices, z):
+        """The part of the table around the object, seen through."""
+        spans = [(min(v[k] for v in object_vertices), max(v[k] for v in object_vertices)) for k in (0, 1)]
+        margin = 0.75 * max(high - low for low, high in spans)
+        (x_low, x_high), (y_low, y_high) = [(low - margin, high + margin) for low, high in spans]
+        # A slab, since views across a palm that looks down see a plane edge on.
+        corners = [
+            (x, y, top)
+            for top in (z - 0.03 * margin, z)
+            for x, y in ((x_low, y_low), (x_high, y_low), (x_high, y_high), (x_low, y_high))
+        ]
+        sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
+        table = self.solid(corners, [[3, 2, 1, 0], [4, 5, 6, 7], *sides], "surroundings", specular=0.0)
+        table.GetProperty().SetOpacity(SEEN_THROUGH)
+        return table
 
     def solid(self, vertices, faces, color, specular=0.18):
         vtk = self.vtk

@@ -40,6 +40,16 @@ class RenderHold(PictureTest):
         self.assertGreater(red[12], 2e-3, "the load's arrow")
         self.assertIsNotNone(ImageChops.difference(frames[0], frames[5]).getbbox(), "the hand closes")
 
+    def test_a_table_is_shown_where_there_is_one(self):
+        def share():
+            with Image.open(self.drawn("replay.gif", "--width", "320", "--height", "310")) as image:
+                view = image.convert("RGB").crop((0, 40, 320, 210))
+                return share_near(view, (166, 187, 159), 30)
+
+        without = share()
+        self.text = json.dumps(json.loads(self.text) | {"table_z": -0.04})
+        self.assertGreater(share(), without + 0.05)
+
     def test_bad_input_is_one_line_and_no_file(self):
         scene = json.loads(self.text)
         scene["directions"][0]["times"].pop()

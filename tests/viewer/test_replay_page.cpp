@@ -56,6 +56,18 @@ TEST_CASE("A replay's shifts and turns are the object's as the palm sees it",
   CHECK(data["directions"][0]["times"].size() == 51);
 }
 
+TEST_CASE("A replay of a lift has the table on which the object stands", "[viewer][replay_page]") {
+  viewer::ReplayInput input = sample_replay();
+  CHECK(nlohmann::json::parse(viewer::replay_scene_json(input))["table_z"].is_null());
+  input.protocol.load = hold_test::HoldLoad::Lift;
+  input.verdict.directions.resize(1);
+  input.replays.resize(1);
+  // The pieces are a cube of 80 mm.
+  CHECK(nlohmann::json::parse(viewer::replay_scene_json(input))["table_z"] == -0.04);
+  input.object.foot_O = {{0.0, 0.0, -0.0405}, {0.0, 0.0, -0.0395}};
+  CHECK(nlohmann::json::parse(viewer::replay_scene_json(input))["table_z"] == -0.0405);
+}
+
 TEST_CASE("A note is in the replay's data, and without one there is none",
           "[viewer][replay_page]") {
   viewer::ReplayInput input = sample_replay();

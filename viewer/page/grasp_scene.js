@@ -156,29 +156,15 @@ function sheets() {
       for (const [i, j, k] of faces) triangle(points[i], points[j], points[k], rgba);
     }
   }
-  if (hasTable && layers.surroundings) {
-    const [a, b, c, d] = tableCorners();
-    const rgba = hex(kColors.surroundings, 0.45);
-    triangle(a, b, c, rgba);
-    triangle(a, c, d, rgba);
-  }
+  if (hasTable && layers.surroundings) tableSheet(triangle, objectBounds, surroundings.table_z);
   return made();
-}
-
-// Of the part of the table that is drawn: around the object, as wide again as it on each side.
-function tableCorners() {
-  const [low, high] = [objectBounds.low, objectBounds.high];
-  const margin = 0.75 * Math.max(high[0] - low[0], high[1] - low[1]);
-  const z = surroundings.table_z;
-  return [[low[0] - margin, low[1] - margin, z], [high[0] + margin, low[1] - margin, z],
-          [high[0] + margin, high[1] + margin, z], [low[0] - margin, high[1] + margin, z]];
 }
 
 function boundsOfScene() {
   const bounds = {low: objectBounds.low.slice(), high: objectBounds.high.slice()};
   if (layers.surroundings) {
     const corners = obstacles.flatMap((obstacle) => [obstacle.bounds.low, obstacle.bounds.high])
-        .concat(hasTable ? tableCorners() : []);
+        .concat(hasTable ? tableCorners(objectBounds, surroundings.table_z) : []);
     for (const corner of corners) {
       for (let k = 0; k < 3; ++k) {
         bounds.low[k] = Math.min(bounds.low[k], corner[k]);

@@ -3,7 +3,8 @@
 const {protocol, verdict, directions} = data;
 const limits = {shift: protocol.largest_shift, turn: protocol.largest_turn};
 let shown = data.shown;   // of `directions`
-const layers = {object: true, hand: true, load: true, path: true, pieces: false};
+const hasTable = data.table_z !== null;
+const layers = {object: true, hand: true, load: true, path: true, table: true, pieces: false};
 handOpacity = 0.75;
 
 // ------------------------------------------------------------------------------------------- data
@@ -94,7 +95,9 @@ function marks() {
   return made;
 }
 function sheets() {
-  return sheetMaker().made();
+  const {triangle, made} = sheetMaker();
+  if (hasTable && layers.table) tableSheet(triangle, objectBounds, data.table_z);
+  return made();
 }
 function labels(project) {
   if (!layers.load || !isLoaded()) return [];
@@ -106,11 +109,13 @@ function view(name) {
   const toward = {x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1]}[name];
   if (toward) lookAlong(toward);
   if (name === 'side') {
-    // Across the load and, of the two sides, where the palm does not hide the object.
+    // Across the load and, of the two sides, where the palm does not hide the object, or from above a
+    // table.
     const palm = palmAt(linkPosesAt(current(), 0)[data.hand.palm.link]).direction;
     const across = cross(palm, current().direction);
     const side = length(across) > 0.2 ? unit(across) : anyPerpendicular(palm);
-    lookAlong(unit(add(side, times(palm, 0.25))));
+    const above = [side[0], side[1], 0.35 * Math.hypot(side[0], side[1])];
+    lookAlong(unit(hasTable ? above : add(side, times(palm, 0.25))));
   }
   fit();
   draw();
@@ -150,6 +155,7 @@ function makeControls() {
     ['object', 'Object', kColors.object], ['hand', 'Hand', kColors.hand],
     ['load', protocol.is_lift ? 'Weight' : 'Load', kColors.contact],
     ['path', 'Way of the center of mass', kColors.edge],
+    ...(hasTable ? [['table', 'Table', kColors.surroundings]] : []),
     ['pieces', `Convex pieces, as the engine sees it (object: ${data.pieces.num_object})`, ''],
   ]) {
     const row = toggleRow(layers, key, color, '', false);

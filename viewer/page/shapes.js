@@ -185,6 +185,18 @@ function boundsOf(vertices) {
   }
   return {low, high};
 }
+// Of the part of a table that is drawn: around an object, as wide again as it on each side.
+function tableCorners({low, high}, z) {
+  const margin = 0.75 * Math.max(high[0] - low[0], high[1] - low[1]);
+  return [[low[0] - margin, low[1] - margin, z], [high[0] + margin, low[1] - margin, z],
+          [high[0] + margin, high[1] + margin, z], [low[0] - margin, high[1] + margin, z]];
+}
+function tableSheet(triangle, bounds, z) {
+  const [a, b, c, d] = tableCorners(bounds, z);
+  const rgba = hex(kColors.surroundings, 0.45);
+  triangle(a, b, c, rgba);
+  triangle(a, c, d, rgba);
+}
 const links = data.hand.links.map((link) => {
   const vertices = floats(link.mesh.vertices);
   return {name: link.name, vertices, faces: integers(link.mesh.faces), bounds: boundsOf(vertices)};

@@ -181,6 +181,7 @@ std::string replay_scene_json(const ReplayInput& input) {
   for (std::size_t d = 0; d < input.replays.size(); ++d) {
     directions.push_back(direction_json(input, d));
   }
+  const bool is_lift = input.protocol.load == hold_test::HoldLoad::Lift;
   Json data = {{"title", input.title},
                {"object", to_json(input.object_O)},
                {"center_of_mass", to_json(input.object.center_of_mass_O)},
@@ -190,6 +191,7 @@ std::string replay_scene_json(const ReplayInput& input) {
                  {"num_object", input.object.shape.pieces.size()},
                  {"links", link_pieces}}},
                {"protocol", protocol_json(input.protocol)},
+               {"table_z", is_lift ? Json(hold_test::table_z_O(input.object)) : Json(nullptr)},
                {"verdict",
                 {{"stage", hold_test::name_of(input.verdict.stage)},
                  {"reason", input.verdict.reason},

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "graspfit/geometry/convex_hull.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
@@ -33,6 +34,15 @@ HoldObject prepare_hold_object(const geometry::TriangleMesh& mesh,
   const geometry::MassProperties mass = geometry::mass_properties(mesh);
   return {geometry::cached_convex_decomposition(mesh, options), mass.center_of_mass,
           mass.inertia / mass.volume, foot(mesh, mass.center_of_mass)};
+}
+
+double table_z_O(const HoldObject& object) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& point : object.foot_O) lowest = std::min(lowest, point.z());
+  for (const geometry::TriangleMesh& piece : object.shape.pieces) {
+    for (const Eigen::Vector3d& vertex : piece.vertices) lowest = std::min(lowest, vertex.z());
+  }
+  return lowest;
 }
 
 HoldHand prepare_hold_hand(const hands::HandModel& hand,

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <limits>
 #include <span>
 
 #include "graspfit/base/as_index.hpp"
@@ -208,22 +207,17 @@ class Scene {
                inertial(protocol_.object_mass, Eigen::Vector3d::Zero(),
                         protocol_.object_mass * object_.inertia_per_mass_O) +
                pieces(object_.shape, "object", -center);
-    double lowest = std::numeric_limits<double>::infinity();
     if (is_on_table && geometry::convex_hull(object_.foot_O).measure > kLeastPieceVolume) {
       // The table alone meets it.
       bodies_ += hull(object_.foot_O,
                       attribute("class", "object") + " contype=\"0\" conaffinity=\"4\"", -center);
-      for (const Eigen::Vector3d& point : object_.foot_O) lowest = std::min(lowest, point.z());
     }
     bodies_ += "</body>\n";
     if (!is_on_table) return;
-    for (const geometry::TriangleMesh& piece : object_.shape.pieces) {
-      for (const Eigen::Vector3d& vertex : piece.vertices) lowest = std::min(lowest, vertex.z());
-    }
     bodies_ +=
         "<geom class=\"object\" type=\"plane\" size=\"0 0 1\" contype=\"4\" "
         "conaffinity=\"0\"" +
-        position({0.0, 0.0, lowest}) + "/>\n";
+        position({0.0, 0.0, table_z_O(object_)}) + "/>\n";
   }
 
   void add_pairs() {

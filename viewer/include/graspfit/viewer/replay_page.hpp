@@ -33,8 +33,8 @@ std::size_t telling_direction(const hold_test::HoldVerdict& verdict,
 /// The data of a replay for the page and the picture script (viewer/render_hold.py), as JSON:
 /// meshes and convex pieces, and per direction the poses of object and links in every frame, the
 /// object's shift and turn in the palm's frame since the squeezed pose (before this pose: since the
-/// planned one), and the verdict. Frames end once the object is two of its diagonals away. The same
-/// input gives the same bytes.
+/// planned one), the table's height where the object is lifted, and the verdict. Frames end once
+/// the object is two of its diagonals away. The same input gives the same bytes.
 /// @throws InvalidInput if the object has no faces, the verdict no direction, a replay no frame, or
 /// a frame does not fit the hand.
 std::string replay_scene_json(const ReplayInput& input);

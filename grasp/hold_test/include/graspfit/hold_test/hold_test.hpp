@@ -33,6 +33,10 @@ struct HoldObject {
 HoldObject prepare_hold_object(const geometry::TriangleMesh& mesh,
                                const geometry::ConvexDecompositionOptions& options = {});
 
+/// Height along z of O of the table under `HoldLoad::Lift`: of the lowest point of pieces and foot,
+/// at least one of which there is [m].
+double table_z_O(const HoldObject& object);
+
 /// A hand as the engine sees it, prepared once: the convex pieces of each link in the link's frame
 /// L.
 struct HoldHand {
