@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "approach/way_up.hpp"
+#include "grasp/posed_box.hpp"
 #include "grasp/reach_options.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
@@ -34,16 +35,7 @@ struct Pinch {
     grasp.X_OH.linear() = Vector3d(1.0, -1.0, -1.0).asDiagonal();
     grasp.X_OH.translation().z() = 0.072;  // above what it stands on
   }
-  double top() const {
-    double z = 0.0;
-    const auto X_OL = hands::forward_kinematics(hand, grasp);
-    for (std::size_t link = 0; link < X_OL.size(); ++link) {
-      for (const Vector3d& vertex : hand.links[link].mesh_L.vertices) {
-        z = std::max(z, (X_OL[link] * vertex).z());
-      }
-    }
-    return z;
-  }
+  double top() const { return testing::posed_box(hand, grasp).max().z(); }
   bool is_free(const std::vector<TriangleMesh>& obstacles) const {
     Surroundings around;
     around.table_z_O = -0.015;
