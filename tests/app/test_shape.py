@@ -34,6 +34,23 @@ class Shape(program.ProgramTest):
         program.run("shape", "mug", "--set", "segments=120,height=0.12", "--out", path)
         self.assertEqual(path.read_bytes(), first)
 
+    def test_a_shape_goes_where_it_is_asked_to(self):
+        def vertices(*arguments):
+            path = self.folder / "bin.off"
+            done = program.run("shape", "bin", *arguments, "--out", path)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            lines = path.read_text().splitlines()
+            return [[float(x) for x in line.split()] for line in lines[2:2 + int(lines[1].split()[0])]]
+
+        at = (0.1, -0.05, 0.25)
+        middle = vertices()
+        moved = vertices("--at", "0.1,-0.05,0.25")
+        self.assertEqual(len(moved), len(middle))
+        for a, b in zip(middle, moved):
+            for x, y, shift in zip(a, b, at):
+                self.assertAlmostEqual(x + shift, y, places=12)
+        self.assertEqual(vertices("--at", "0,0,0"), middle)
+
     def test_what_cannot_be_built_is_refused(self):
         out = ["--out", self.folder / "x.obj"]
         for arguments, says in [
@@ -41,6 +58,8 @@ class Shape(program.ProgramTest):
                 (out, "NAME"),
                 (["mug"], "--out"),
                 (["mug", "--out", self.folder / "x.xyz"], "xyz"),
+                (["mug", "--at", "1,2"] + out, ["--at", "1,2", "three numbers"]),
+                (["mug", "--at", "1,2,up"] + out, ["--at", "up"]),
                 (["mug", "--set", "height"] + out, ["height", "NAME=VALUE"]),
                 (["mug", "--set", "height=tall"] + out, ["height", "tall"]),
                 (["mug", "--set", "hight=1"] + out, ["hight", "handle_height"]),

@@ -53,12 +53,13 @@ class Bin(program.ProgramTest):
         self.assertEqual(obstacle["file"], "bin.off")
         self.assertEqual(file["surroundings"]["table_z_O_m"], 0)
 
-        # The object stands in the bin, between its walls.
+        # The object stands in the bin, between its walls, off its middle.
         inner = {"x": 0.346 / 2, "y": 0.265 / 2}
+        middle = {"x": 0.06, "y": 0.04}
         box = file["object"]["mesh"]["bounding_box_m"]
         self.assertAlmostEqual(box["lower"][2], 0, places=12)
-        for axis, half in enumerate(inner.values()):
-            self.assertLess(max(-box["lower"][axis], box["upper"][axis]), half)
+        for axis, name in enumerate(inner):
+            self.assertLess(max(middle[name] - box["lower"][axis], box["upper"][axis] - middle[name]), inner[name])
 
         # So is the hand, at the grasp by its vertices, on the way there by what is measured.
         with open(out / "grasps.csv", newline="", encoding="utf-8") as table:
@@ -68,8 +69,8 @@ class Bin(program.ProgramTest):
             for x, y, z in self.hand_vertices(out / f"grasp_{rank:03}.obj"):
                 self.assertGreater(z, 0.001)
                 if z < 0.1:
-                    self.assertLess(abs(x), inner["x"])
-                    self.assertLess(abs(y), inner["y"])
+                    self.assertLess(abs(x - middle["x"]), inner["x"])
+                    self.assertLess(abs(y - middle["y"]), inner["y"])
             self.assertGreaterEqual(float(row["pre_grasp_clearance_m"]), 0.005)
         # By exact queries too, from the files.
         self.assertEqual(commands[-1][1], "evaluate")

@@ -194,6 +194,14 @@ std::vector<double> Flags::numbers(const std::string& name) const {
   return numbers;
 }
 
+Eigen::Vector3d Flags::vector(const std::string& name) const {
+  const std::vector<double> values = numbers(name);
+  if (values.size() != 3) {
+    throw UsageError("--" + name + " \"" + text(name) + "\" is not three numbers X,Y,Z");
+  }
+  return {values[0], values[1], values[2]};
+}
+
 std::vector<std::size_t> Flags::indices(const std::string& name) const {
   std::vector<std::size_t> indices;
   if (!has(name)) return indices;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>
 #include <cstdint>
@@ -80,6 +81,7 @@ class Flags {
   std::uint64_t unsigned_integer(const std::string& name) const;
   std::vector<std::string> words(const std::string& name) const;  ///< Separated by commas.
   std::vector<double> numbers(const std::string& name) const;     ///< Separated by commas.
+  Eigen::Vector3d vector(const std::string& name) const;          ///< Three numbers.
 
   /// Reads ranks separated by commas, which count from 1, as indices, which count from 0. They are
   /// ascending, each once; none if the option is not given.

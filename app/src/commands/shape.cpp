@@ -22,6 +22,9 @@ Command shape_command() {
              "the file to write, replacing it: .obj, .off, .ply or .stl");
   add_option(command.options, "set", "NAME=VALUE,...", std::nullopt,
              "dimensions other than the default ones: lengths [m] and counts");
+  add_option(command.options, "at", "X,Y,Z", "0,0,0",
+             "where the shape's origin goes [m]: an obstacle beside an object, or a bin in which "
+             "the object does not stand in the middle");
   add_switch(command.options, "list", "print all shapes with their dimensions and defaults");
   return command;
 }
@@ -59,7 +62,9 @@ ExitCode run_shape(const std::vector<std::string>& arguments) {
   }
   const std::string& name = flags.positional();
   if (!flags.has("out")) throw UsageError("no --out FILE given");
-  const geometry::TriangleMesh mesh = geometry::named_shape(name, read_dimensions(flags));
+  geometry::TriangleMesh mesh = geometry::named_shape(name, read_dimensions(flags));
+  const Eigen::Vector3d shift = flags.vector("at");
+  for (Eigen::Vector3d& vertex : mesh.vertices) vertex += shift;
   geometry::write_mesh(flags.text("out"), mesh);
   std::printf("%s: %zu vertices, %zu faces, %s\n", flags.text("out").c_str(), mesh.vertices.size(),
               mesh.faces.size(), extents_text(mesh).c_str());

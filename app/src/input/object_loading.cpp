@@ -106,9 +106,10 @@ boost::program_options::options_description surroundings_options() {
   add_option(options, "rest-pose", "N|all", "1",
              "with --on-table: which pose, 1 the likeliest (inspect lists them); all: in each that "
              "is at least as likely as 1 %, into DIR/rest_pose_N");
-  add_option(options, "table-clearance-mm", "MM",
-             base::plain_decimal(kMillimetersPerMeter * grasp::kTableClearance),
-             "the hand comes no nearer to the table than this [mm]");
+  add_option(
+      options, "table-clearance-mm", "MM",
+      base::plain_decimal(kMillimetersPerMeter * grasp::kTableClearance),
+      "the hand comes no nearer to the table than this [mm]; 0: fingertips may come down to it");
   add_repeatable_option(options, "obstacle", "FILE",
                         "a solid in the object's frame; may be given again for further ones "
                         "[R, A45]");

@@ -155,11 +155,7 @@ OptionValue value_of(const Flags& flags, const PlannerOption& option) {
     case OptionKind::Direction:
       break;
   }
-  const std::vector<double> numbers = flags.numbers(name);
-  if (numbers.size() != 3) {
-    throw UsageError("--" + name + " \"" + flags.text(name) + "\" is not three numbers X,Y,Z");
-  }
-  return Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+  return flags.vector(name);
 }
 
 /// Sets the options that the flags of a group give, or the flags of all groups if `group` is empty.
