@@ -212,6 +212,7 @@ class BadFlags(program.ProgramTest):
                      "pair-rule", "regularity", "centroid", "measure-units", "repair", "mesh-unit",
                      "self-intersections", "target-search", "refine", "pre-grasps", "exclude-weak",
                      "contact-state", "palm-after-contact", "counted-pads", "contact-pieces",
+                     "contact-faces",
                      "reject", "guard-self", "pre-grasp-open-neutral",
                      "pre-grasp-leave-pressing", "candidate-order", "keep", "search", "rank"):
             with self.subTest(flag):

@@ -42,6 +42,7 @@ inline grasp::PlannerOptions unusual_options() {
   options.largest_deviation = 0.017;
   options.counted_pads = contact::CountedPads::TipsAndPalm;
   options.contact_pieces = contact::ContactPieces::Separate;
+  options.contact_faces = contact::ContactFaces::Facing;
   options.fitting.contact_state = grasp::ContactState::FirstGraze;
   options.fitting.palm_after_contact = grasp::PalmAfterContact::Frozen;
   options.refinement.near_pad_steps = 5;

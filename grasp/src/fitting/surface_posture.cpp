@@ -29,7 +29,7 @@ constexpr int kMostEvaluations = 14;
 constexpr int kHopefulFor = 2;             // steps
 constexpr double kLastHopefulGap = 0.003;  // [m]
 constexpr double kGapPerStep = 0.001;      // [m]
-constexpr int kStepsToPlaces = 3;          // after these it is asked whether patches are worth it
+constexpr int kStepsToPlaces = 3;          // after these it is asked whether places are worth it
 constexpr double kLongestStep = 0.02;      // of every entry of a motion [m]
 constexpr double kLongestReach = 0.1;      // of every entry before a step is shortened [m]
 // A step is worth it if by this share of the sum of squares it lowers it, or promises to.
@@ -37,7 +37,7 @@ constexpr double kLeastGain = 0.05;
 // Against 1 for a gap: how far a pad leans, as a length; a link's depth.
 constexpr double kLeanLever = 0.002;  // [m/rad]
 constexpr double kDepthWeight = 2.0;
-// By so much pads and links are kept off: patches are rounder than the surface, and refinement
+// By so much pads and links are kept off: places are rounder than the surface, and refinement
 // closes gaps more often than it frees a hand that is in the object. [voxels]
 constexpr double kMargin = 0.25;
 constexpr double kDepthMargin = 0.5;
@@ -56,12 +56,11 @@ std::array<double, 3> cell_at(const Vector3d& point, double spacing) {
   return {cell[0], cell[1], cell[2]};
 }
 
-/// From a point of a pad to the patch: along its normal, and across it as far as the point is
-/// beyond the patch's voxel.
-Vector3d way_to_patch(const Vector3d& point_O, const geometry::SurfacePatch& patch,
-                      double voxel_size) {
-  const Vector3d way = patch.centroid - point_O;
-  const Vector3d along = patch.outward_normal * patch.outward_normal.dot(way);
+/// From a point of a pad to the place: along its normal, and across it as far as the point is
+/// farther from it than a voxel.
+Vector3d way_to_place(const Vector3d& point_O, const SurfacePlace& place, double voxel_size) {
+  const Vector3d way = place.point_O - point_O;
+  const Vector3d along = place.outward_normal_O * place.outward_normal_O.dot(way);
   const Vector3d across = way - along;
   const double beyond = across.norm() - voxel_size;
   return beyond > 0.0 ? Vector3d(along + across * (beyond / across.norm())) : along;
@@ -153,18 +152,20 @@ CoarseDistances::CoarseDistances(const geometry::SignedDistanceMap& map)
 }
 
 SurfaceSearch::SurfaceSearch(const FittingHand& hand, const ObjectModel& object,
-                             const NearestPatches& nearest, const NearestPatches& places,
+                             const std::vector<SurfacePlace>& places, const NearestPlaces& nearest,
+                             const NearestPlaces& nearest_for_pads,
                              const SurroundingsCollision& surroundings)
     : hand_(hand),
       object_(object),
-      nearest_(nearest),
       places_(places),
+      nearest_(nearest),
+      nearest_for_pads_(nearest_for_pads),
       surroundings_(surroundings),
       distances_(object.distance),
       entries_(hand.model(), true, true, MotionEntries::Breakaway::Beyond) {
-  for (const geometry::SurfacePatch& patch : object.patches) {
-    planes_.push_back({patch.outward_normal.cast<float>(),
-                       static_cast<float>(patch.outward_normal.dot(patch.centroid))});
+  for (const SurfacePlace& place : places) {
+    planes_.push_back({place.outward_normal_O.cast<float>(),
+                       static_cast<float>(place.outward_normal_O.dot(place.point_O))});
   }
   for (const hands::ContactPad& pad : hand.model().pads) {
     std::vector<Vector3d>& points = pad_points_L_.emplace_back();
@@ -271,13 +272,21 @@ std::vector<SurfaceSearch::PointGroup> SurfaceSearch::groups_of(
   return groups;
 }
 
-double SurfaceSearch::height(const Vector3d& point_O) const {
-  const Plane& plane = planes_[nearest_.at(point_O)];
+double SurfaceSearch::height(std::int32_t place, const Vector3d& point_O) const {
+  const Plane& plane = planes_[place];
   return static_cast<double>(plane.normal.dot(point_O.cast<float>()) - plane.offset);
 }
 
+/// The place nearest to a point; of a thin wall, which is below both of its sides, the one above
+/// which the point is, or below which it is less deep.
+std::int32_t SurfaceSearch::place_at(const Vector3d& point_O) const {
+  const std::int32_t place = nearest_.at(point_O);
+  const std::int32_t other = nearest_.other_side(place);
+  return other >= 0 && height(other, point_O) > height(place, point_O) ? other : place;
+}
+
 /// Of a link's points that are within the lift of voxels that are not empty the one deepest below
-/// its patch.
+/// its place.
 SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(int link, const RigidTransform& X_OL,
                                                       double lift) const {
   const geometry::VoxelLattice& lattice = object_.grid.lattice;
@@ -298,12 +307,12 @@ SurfaceSearch::DeepPoint SurfaceSearch::deepest_point(int link, const RigidTrans
       if (voxels_away(point_L) > near) continue;
       const Vector3d point = X_OL * point_L.cast<double>();
       if (object_.distance.at(point) > near) continue;
-      const double depth = -height(point);
+      const double depth = -height(place_at(point), point);
       if (depth > deepest.depth) deepest = {depth, point};
     }
   }
   if (deepest.depth > -std::numeric_limits<double>::infinity()) {
-    deepest.outward_O = object_.patches[nearest_.at(deepest.point_O)].outward_normal;
+    deepest.outward_O = places_[place_at(deepest.point_O)].outward_normal_O;
   }
   return deepest;
 }
@@ -314,7 +323,10 @@ Vector3d SurfaceSearch::touching_point(int pad, const RigidTransform& X_OL) cons
   const std::vector<Vector3d>& points_L = pad_points_L_[pad];
   std::vector<double> heights;
   heights.reserve(points_L.size());
-  for (const Vector3d& point_L : points_L) heights.push_back(height(X_OL * point_L));
+  for (const Vector3d& point_L : points_L) {
+    const Vector3d point = X_OL * point_L;
+    heights.push_back(height(place_at(point), point));
+  }
   const double least = *std::min_element(heights.begin(), heights.end());
   const double unit = kContactDepth * object_.grid.lattice.voxel_size;
   Vector3d sum = Vector3d::Zero();
@@ -353,7 +365,7 @@ SurfacePosture SurfaceSearch::lay(const std::vector<int>& pads,
     const bool is_done = trial.sum > (1.0 - kLeastGain) * best.sum;
     best = std::move(trial);
     if (is_done) break;
-    if (++num_steps == kStepsToPlaces && is_worth_it && !is_worth_it(best.posture.patches)) break;
+    if (++num_steps == kStepsToPlaces && is_worth_it && !is_worth_it(best.posture.places)) break;
     equations = NormalEquations(best.wishes, motion_from(best));
     damping = std::max(0.25 * damping, 1e-4);
   }
@@ -381,12 +393,12 @@ SurfaceSearch::Evaluated SurfaceSearch::evaluated(const std::vector<int>& pads,
     const int link = model.pads[pad].link;
     const Vector3d point = touching_point(pad, posture.X_OL[link]);
     result.pivot_O += point / static_cast<double>(pads.size());
-    const std::int32_t number = places_.at(point);
-    const geometry::SurfacePatch& patch = object_.patches[number];
-    posture.patches.push_back(number);
-    const Vector3d way = way_to_patch(point, patch, voxel_size);
     const Vector3d normal = hands::pad_pose(model, pad, posture.X_OL).linear().col(2);
-    const Vector3d inward = -patch.outward_normal;
+    const std::int32_t number = nearest_for_pads_.at(point, normal);
+    const SurfacePlace& place = places_[number];
+    posture.places.push_back(number);
+    const Vector3d way = way_to_place(point, place, voxel_size);
+    const Vector3d inward = -place.outward_normal_O;
     const Vector3d cross = normal.cross(inward);
     const double lean = std::atan2(cross.norm(), normal.dot(inward));
     posture.largest_lean = std::max(posture.largest_lean, lean);
@@ -396,10 +408,10 @@ SurfaceSearch::Evaluated SurfaceSearch::evaluated(const std::vector<int>& pads,
     for (const Vector3d& axis : {u, Vector3d(normal.cross(u))}) {
       add({link, point, axis, turn.dot(axis), kLeanLever, true});
     }
-    // Across the patch the pad is free to move.
-    const double along = patch.outward_normal.dot(way);
-    add({link, point, patch.outward_normal, along + margin});
-    const Vector3d across = way - along * patch.outward_normal;
+    // Across the place the pad is free to move.
+    const double along = place.outward_normal_O.dot(way);
+    add({link, point, place.outward_normal_O, along + margin});
+    const Vector3d across = way - along * place.outward_normal_O;
     const double beyond = across.norm();
     if (beyond > 0.0) add({link, point, across / beyond, beyond});
     posture.largest_gap = std::max(posture.largest_gap, std::hypot(along + margin, beyond));

@@ -49,10 +49,12 @@ class FittingGuidance : public GraspGuidance {
             geometry::largest_radius(scene.object.mesh(), scene.object.mass.center_of_mass)) {
     const TargetOptions& targets = scene.options.targets;
     if (targets.search == TargetSearch::Reach) {
+      surface_ = surface_places(scene.object,
+                                scene.options.contact_faces == contact::ContactFaces::Facing);
       places_.emplace(scene.object, scene.parts, targets,
-                      touchable_above_table(pool_of(scene.object, targets), scene.hand.model(),
-                                            scene.surroundings));
-      reach_.emplace(scene_, *places_);
+                      touchable_above_table(pool_of(scene.object, surface_, targets),
+                                            scene.hand.model(), scene.surroundings));
+      reach_.emplace(scene_, surface_, *places_);
       return;
     }
     distances_ = part_distances(scene.hand.model());
@@ -223,7 +225,8 @@ class FittingGuidance : public GraspGuidance {
   const double torque_scale_;               ///< The torque scale of squeezes [m].
   PartDistances distances_;                 ///< Outlives the other searches, which refer to it.
   std::optional<TargetSelector> selector_;  ///< Of the random search.
-  std::optional<TargetPlaces> places_;      ///< Of the search by reach, which refers to it.
+  std::vector<SurfacePlace> surface_;       ///< Of the search by reach, which refers to it.
+  std::optional<TargetPlaces> places_;      ///< Likewise.
   std::optional<ReachSides> reach_;
   mutable std::mutex ranked_lock_;
   mutable std::optional<RankedTargets> ranked_;

@@ -89,12 +89,12 @@ std::optional<RigidTransform> aligned(const Facing& a_H, const Facing& b_H, cons
 
 }  // namespace
 
-HandProposals::HandProposals(const hands::HandModel& hand, const ObjectModel& object,
+HandProposals::HandProposals(const hands::HandModel& hand, const std::vector<SurfacePlace>& places,
                              const TargetPlaces& targets, const HandGrips& grips,
-                             const NearestPatches& places, const TableReach& table)
-    : hand_(hand), targets_(targets), grips_(grips), places_(places), table_(table) {
-  for (const geometry::SurfacePatch& patch : object.patches) {
-    surface_.push_back({patch.centroid, -patch.outward_normal});
+                             const NearestPlaces& nearest, const TableReach& table)
+    : hand_(hand), targets_(targets), grips_(grips), nearest_(nearest), table_(table) {
+  for (const SurfacePlace& place : places) {
+    surface_.push_back({place.point_O, -place.outward_normal_O});
   }
 }
 
@@ -107,7 +107,7 @@ std::optional<HandProposal> HandProposals::completed(const HandGrips::Grip& grip
                                                      HandProposal proposal) const {
   if (proposal.largest_cost >= most) return std::nullopt;
   for (const std::size_t part : grip.parts) {
-    if (proposal.patches[part]) continue;
+    if (proposal.places[part]) continue;
     const std::optional<Placing> placing = cheapest(proposal, part, most);
     if (!placing) return std::nullopt;
     proposal = with(std::move(proposal), *placing);
@@ -131,9 +131,10 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
   const double along_a = a_O.normal.dot(line);
   const double along_b = -b_O.normal.dot(line);
   if (!pinch.table.may_have(distance, along_a, along_b, may_lean)) return std::nullopt;
-  // Pads that face each other need no space beside one another. Without a table that makes no
-  // difference to what is found, but to its course.
-  const bool may_be_near = table_.has_table() && a.inward_normal_O.dot(b.inward_normal_O) < 0.0;
+  // Pads that face each other need no space beside one another. Without a table, but for thin
+  // walls, that makes no difference to what is found, but to its course.
+  const bool may_be_near = (table_.has_table() || nearest_.other_side(a.place) >= 0) &&
+                           a.inward_normal_O.dot(b.inward_normal_O) < 0.0;
   if (!may_be_near && targets_.is_too_near(distance)) return std::nullopt;
   const auto samples =
       pinch.table.draw(distance, geometry::angle_between(a_O.normal, line),
@@ -150,7 +151,7 @@ std::optional<HandProposal> HandProposals::pinch(const HandGrips::Grip& grip,
   const auto placing = [&](std::size_t part, std::int32_t sample, const PoolPoint& place) {
     const Facing pad_H = facing(grips_.parts()[part].samples, sample);
     const double gap = (*X_OH * pad_H.point - place.point_O).norm();
-    return Placing{part, sample, *place.patch,
+    return Placing{part, sample, place.place,
                    cost(gap, X_OH->linear() * pad_H.normal, place.inward_normal_O)};
   };
   return with(with(proposal_at(*X_OH), placing(pinch.part_a, samples->first, a)),
@@ -178,7 +179,7 @@ std::optional<HandProposal> HandProposals::palm_first(const HandGrips::Grip& gri
   X_OH.translation() = point.point_O - X_OH.linear() * pad.point;
   if (!table_.is_palm_above(X_OH)) return std::nullopt;
   // The palm lies where it was put: that costs nothing.
-  return with(proposal_at(X_OH), {grip.parts.back(), sample, *point.patch, 0.0});
+  return with(proposal_at(X_OH), {grip.parts.back(), sample, point.place, 0.0});
 }
 
 HandProposal HandProposals::proposal_at(const RigidTransform& X_OH) const {
@@ -186,7 +187,8 @@ HandProposal HandProposals::proposal_at(const RigidTransform& X_OH) const {
   proposal.configuration = hands::open_configuration(hand_);
   proposal.configuration.X_OH = X_OH;
   proposal.is_fixed.resize(hand_.joints.size(), false);
-  proposal.patches.resize(grips_.parts().size());
+  proposal.places.resize(grips_.parts().size());
+  proposal.samples.resize(grips_.parts().size());
   return proposal;
 }
 
@@ -197,7 +199,8 @@ HandProposal HandProposals::with(HandProposal proposal, const Placing& placing) 
     proposal.configuration.q[samples.joints[j]] = samples.positions(j, placing.sample);
     proposal.is_fixed[samples.joints[j]] = true;
   }
-  proposal.patches[placing.part] = placing.patch;
+  proposal.places[placing.part] = placing.place;
+  proposal.samples[placing.part] = placing.sample;
   proposal.largest_cost = std::max(proposal.largest_cost, placing.cost);
   return proposal;
 }
@@ -210,7 +213,7 @@ std::optional<HandProposals::Placing> HandProposals::cheapest(const HandProposal
   const RigidTransform& X_OH = proposal.configuration.X_OH;
   double least = most;
   std::optional<std::size_t> best;
-  std::int32_t best_patch = 0;
+  std::int32_t best_place = 0;
   for (std::size_t from = 0; from < samples.size(); from += samples.range_size) {
     bool fits = true;
     for (std::size_t j = samples.joints.size() - samples.num_shared;
@@ -223,12 +226,14 @@ std::optional<HandProposals::Placing> HandProposals::cheapest(const HandProposal
     for (std::size_t number = from; number < from + samples.range_size; ++number) {
       const auto sample = static_cast<Index>(number);
       const Vector3d point = X_OH * samples.points_H.col(sample);
-      const std::int32_t index = places_.at(point);
+      const auto normal_O = [&] { return Vector3d(X_OH.linear() * samples.normals_H.col(sample)); };
+      std::int32_t index = nearest_.at(point);
+      if (nearest_.other_side(index) >= 0) index = nearest_.at(point, normal_O());
       const Facing& place = surface_[index];
       const double squared = (point - place.point).squaredNorm();
       if (squared >= least * least) continue;
       const double gap = std::sqrt(squared);
-      const Vector3d normal = X_OH.linear() * samples.normals_H.col(sample);
+      const Vector3d normal = normal_O();
       // An angle is no less than its chord.
       const double lean_left = (least - gap) / kLeanLever;
       if (2.0 - 2.0 * normal.dot(place.normal) >= lean_left * lean_left) continue;
@@ -237,11 +242,11 @@ std::optional<HandProposals::Placing> HandProposals::cheapest(const HandProposal
       if (!table_.is_above(part, base::as_index<std::int32_t>(number), X_OH)) continue;
       least = its_cost;
       best = number;
-      best_patch = index;
+      best_place = index;
     }
   }
   if (!best) return std::nullopt;
-  return Placing{part, base::as_index<std::int32_t>(*best), best_patch, least};
+  return Placing{part, base::as_index<std::int32_t>(*best), best_place, least};
 }
 
 }  // namespace graspfit::grasp::internal

@@ -9,7 +9,7 @@
 #include "graspfit/hands/hand_configuration.hpp"
 #include "methods/hand_grips.hpp"
 #include "methods/table_reach.hpp"
-#include "object/nearest_patches.hpp"
+#include "object/nearest_places.hpp"
 #include "targets/target_places.hpp"
 
 namespace graspfit::grasp::internal {
@@ -19,7 +19,9 @@ struct HandProposal {
   hands::HandConfiguration configuration;
   std::vector<bool> is_fixed;  ///< Per joint: a sample set its position.
   /// Per part of the hand; empty: it is not placed.
-  std::vector<std::optional<std::int32_t>> patches;
+  std::vector<std::optional<std::int32_t>> places;
+  /// Per part, which of its samples; meaningless where it is not placed.
+  std::vector<std::int32_t> samples;
   double largest_cost = 0.0;  ///< Of placing a part where it is [m].
 };
 
@@ -33,9 +35,9 @@ class HandProposals {
     Eigen::Vector3d normal;
   };
 
-  /// Refers to all of them but the object. `places` are the pool's.
-  HandProposals(const hands::HandModel& hand, const ObjectModel& object,
-                const TargetPlaces& targets, const HandGrips& grips, const NearestPatches& places,
+  /// Refers to all of them but `places`, the object's. `nearest` are the pool's.
+  HandProposals(const hands::HandModel& hand, const std::vector<SurfacePlace>& places,
+                const TargetPlaces& targets, const HandGrips& grips, const NearestPlaces& nearest,
                 const TableReach& table);
 
   /// With the palm of the grip on a point, or two of its fingers on two points; empty where the
@@ -51,11 +53,11 @@ class HandProposals {
   std::optional<HandProposal> pinch(const HandGrips::Grip& grip, base::Random& random) const;
   std::optional<HandProposal> palm_first(const HandGrips::Grip& grip, base::Random& random) const;
   HandProposal proposal_at(const hands::RigidTransform& X_OH) const;
-  /// A part of the hand at a patch, as one of its samples is.
+  /// A part of the hand at a place, as one of its samples is.
   struct Placing {
     std::size_t part = 0;
     std::int32_t sample = 0;
-    std::int32_t patch = 0;
+    std::int32_t place = 0;
     double cost = 0.0;  ///< [m]
   };
   HandProposal with(HandProposal proposal, const Placing& placing) const;
@@ -65,9 +67,9 @@ class HandProposals {
   const hands::HandModel& hand_;
   const TargetPlaces& targets_;
   const HandGrips& grips_;
-  const NearestPatches& places_;
+  const NearestPlaces& nearest_;
   const TableReach& table_;
-  /// Per patch of the object, facing inward: beside one another, for speed.
+  /// Per place of the object, facing inward: beside one another, for speed.
   std::vector<Facing> surface_;
 };
 

@@ -71,15 +71,15 @@ constexpr double kMostGap = 0.003;           // [m]
 constexpr double kMostDepth = 0.003;         // [m]
 constexpr double kMostDepthOfWraps = 0.001;  // [m]
 
-std::vector<bool> is_in_pool(const TargetPlaces& targets, std::size_t num_patches) {
-  std::vector<bool> is_in(num_patches, false);
-  for (const PoolPoint& point : targets.pool()) is_in[*point.patch] = true;
+std::vector<bool> is_in_pool(const TargetPlaces& targets, std::size_t num_places) {
+  std::vector<bool> is_in(num_places, false);
+  for (const PoolPoint& point : targets.pool()) is_in[point.place] = true;
   return is_in;
 }
 
-std::vector<bool> have_normal(const std::vector<geometry::SurfacePatch>& patches) {
-  std::vector<bool> have(patches.size());
-  for (std::size_t i = 0; i < patches.size(); ++i) have[i] = patches[i].has_normal;
+std::vector<bool> have_normal(const std::vector<SurfacePlace>& places) {
+  std::vector<bool> have(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) have[i] = places[i].has_normal;
   return have;
 }
 
@@ -118,27 +118,33 @@ std::vector<const hands::PadSamples*> samples_of(const HandGrips& grips) {
   return samples;
 }
 
-bool are_different(std::vector<std::int32_t> patches) {
-  std::sort(patches.begin(), patches.end());
-  return std::adjacent_find(patches.begin(), patches.end()) == patches.end();
+bool are_different(std::vector<std::int32_t> places) {
+  std::sort(places.begin(), places.end());
+  return std::adjacent_find(places.begin(), places.end()) == places.end();
 }
 
 }  // namespace
 
-ReachSides::ReachSides(const GuidanceScene& scene, const TargetPlaces& targets)
+ReachSides::ReachSides(const GuidanceScene& scene, const std::vector<SurfacePlace>& places,
+                       const TargetPlaces& targets)
     : scene_(scene),
+      places_(places),
       targets_(targets),
       grips_(scene.hand.model(), scene.parts, grip_rule(scene)),
-      nearest_(scene.object, have_normal(scene.object.patches)),
-      places_(scene.object, is_in_pool(targets, scene.object.patches.size())),
-      search_(scene.hand, scene.object, nearest_, places_, scene.surroundings),
+      nearest_(scene.object, places, have_normal(places)),
+      nearest_of_pool_(scene.object, places, is_in_pool(targets, places.size())),
+      search_(scene.hand, scene.object, places, nearest_, nearest_of_pool_, scene.surroundings),
       clearance_(scene.hand, scene.object, scene.surroundings),
       table_(scene.hand.model(), scene.surroundings, samples_of(grips_)),
-      proposals_(scene.hand.model(), scene.object, targets, grips_, places_, table_),
-      firmness_(scene.object, targets.pool(), firmness_friction(scene.options)),
-      pool_of_patch_(scene.object.patches.size(), -1) {
+      proposals_(scene.hand.model(), places, targets, grips_, nearest_of_pool_, table_),
+      firmness_(scene.object, places, targets.pool(), firmness_friction(scene.options)),
+      bones_(places.size() > scene.object.patches.size()
+                 ? std::optional<FingerBones>(std::in_place, scene.hand.model(), scene.object.query,
+                                              samples_of(grips_))
+                 : std::nullopt),
+      pool_of_place_(places.size(), -1) {
   for (std::int32_t p = 0; p < std::ssize(targets.pool()); ++p) {
-    pool_of_patch_[*targets.pool()[p].patch] = p;
+    pool_of_place_[targets.pool()[p].place] = p;
   }
   const std::size_t num_grips = grips_.grips().size();
   shares_.assign(num_grips, 1.0);
@@ -257,10 +263,20 @@ std::optional<std::pair<HandProposal, double>> ReachSides::completed(const Grip&
                                                                      double least) const {
   std::optional<HandProposal> proposal = proposals_.completed(grip, kMostCost, std::move(begun));
   if (!proposal) return std::nullopt;
-  std::vector<std::int32_t> patches;
-  for (const std::size_t part : grip.parts) patches.push_back(*proposal->patches[part]);
-  if (!are_apart(patches) || !has_stable_pair(patches)) return std::nullopt;
-  return std::pair(std::move(*proposal), firmness_.nominal(patches, least));
+  std::vector<std::int32_t> places;
+  for (const std::size_t part : grip.parts) places.push_back(*proposal->places[part]);
+  if (!are_apart(places) || !has_stable_pair(places) || goes_through_wall(grip, *proposal)) {
+    return std::nullopt;
+  }
+  return std::pair(std::move(*proposal), firmness_.nominal(places, least));
+}
+
+/// Whether a finger that is on a side of a thin wall seems to go through one.
+bool ReachSides::goes_through_wall(const Grip& grip, const HandProposal& proposal) const {
+  if (!bones_) return false;
+  return std::any_of(grip.parts.begin(), grip.parts.end(), [&](std::size_t part) {
+    return !bones_->is_free(part, proposal.samples[part], proposal.configuration.X_OH);
+  });
 }
 
 /// A candidate's posture moved a little, and laid again: of some such motions the one after which
@@ -274,11 +290,12 @@ std::optional<ReachSides::Candidate> ReachSides::varied(const Candidate& from, b
   for (int i = 0; i < kVariations; ++i) {
     hands::HandConfiguration configuration = moved(from.posture, random);
     const std::vector<RigidTransform> X_OL = hands::forward_kinematics(hand, configuration);
-    std::vector<std::int32_t> patches;
+    std::vector<std::int32_t> places;
     for (const int pad : pads) {
-      patches.push_back(places_.at(hands::pad_contact_point(hand, pad, X_OL)));
+      places.push_back(nearest_of_pool_.at(hands::pad_contact_point(hand, pad, X_OL),
+                                           hands::pad_pose(hand, pad, X_OL).linear().col(2)));
     }
-    const double firmness = firmness_.nominal(patches, firmest);
+    const double firmness = firmness_.nominal(places, firmest);
     if (best && firmness <= firmest) continue;
     firmest = firmness;
     best = std::move(configuration);
@@ -294,8 +311,8 @@ hands::HandConfiguration ReachSides::moved(const SurfacePosture& posture,
   const auto drawn = [&](double most) { return scale * random.uniform(-most, most); };
   hands::HandConfiguration configuration = posture.configuration;
   Vector3d pivot = Vector3d::Zero();
-  for (const std::int32_t patch : posture.patches) {
-    pivot += scene_.object.patches[patch].centroid / static_cast<double>(posture.patches.size());
+  for (const std::int32_t place : posture.places) {
+    pivot += places_[place].point_O / static_cast<double>(posture.places.size());
   }
   Vector3d shift, turn;
   for (double& x : shift) x = drawn(kMostShift);
@@ -319,13 +336,14 @@ std::optional<ReachSides::Candidate> ReachSides::laid(const Grip& grip,
   ++work.postures;
   hands::apply_couplings(scene_.hand.model(), start.q);
   const double hopeless = (1.0 - kLeastHope) * least;
-  const auto is_hopeful = [&](const std::vector<std::int32_t>& patches) {
-    return least <= kHardlyFirm || firmness_.nominal(patches, hopeless) > hopeless;
+  const auto is_hopeful = [&](const std::vector<std::int32_t>& places) {
+    return least <= kHardlyFirm || firmness_.nominal(places, hopeless) > hopeless;
   };
   SurfacePosture posture = search_.lay(pads_of(grip), start, 0.0, is_hopeful);
   if (!is_good(posture)) return std::nullopt;
+  if (bones_ && !bones_->are_free(pads_of(grip), posture.X_OL)) return std::nullopt;
   if (grip.wraps && posture.largest_depth > kMostDepthOfWraps) return std::nullopt;
-  const double firmness = firmness_.expected(posture.patches, least);
+  const double firmness = firmness_.expected(posture.places, least);
   if (!(firmness > least) || !clearance_.is_clear_of_itself(posture.X_OL)) return std::nullopt;
   return Candidate{&grip, std::move(posture), firmness};
 }
@@ -376,11 +394,11 @@ bool ReachSides::is_from_approach(const hands::HandConfiguration& configuration)
 }
 
 /// Whether pads could touch side by side. Laid there, links that would overlap are kept apart.
-bool ReachSides::are_apart(const std::vector<std::int32_t>& patches) const {
-  for (std::size_t i = 0; i < patches.size(); ++i) {
+bool ReachSides::are_apart(const std::vector<std::int32_t>& places) const {
+  for (std::size_t i = 0; i < places.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const std::int32_t a = point_of(patches[i]);
-      const std::int32_t b = point_of(patches[j]);
+      const std::int32_t a = point_of(places[i]);
+      const std::int32_t b = point_of(places[j]);
       // Pads that face each other need no space beside one another.
       const std::vector<PoolPoint>& pool = targets_.pool();
       if (pool[a].inward_normal_O.dot(pool[b].inward_normal_O) < 0.0) continue;
@@ -390,10 +408,10 @@ bool ReachSides::are_apart(const std::vector<std::int32_t>& patches) const {
   return true;
 }
 
-bool ReachSides::has_stable_pair(const std::vector<std::int32_t>& patches) const {
-  for (std::size_t i = 0; i < patches.size(); ++i) {
+bool ReachSides::has_stable_pair(const std::vector<std::int32_t>& places) const {
+  for (std::size_t i = 0; i < places.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (targets_.is_stable_pair(point_of(patches[j]), point_of(patches[i]))) return true;
+      if (targets_.is_stable_pair(point_of(places[j]), point_of(places[i]))) return true;
     }
   }
   return false;
@@ -401,11 +419,11 @@ bool ReachSides::has_stable_pair(const std::vector<std::int32_t>& patches) const
 
 bool ReachSides::is_good(const SurfacePosture& posture) const {
   if (posture.largest_gap > kMostGap || posture.largest_lean > kMostLean ||
-      posture.largest_depth > kMostDepth || !are_different(posture.patches)) {
+      posture.largest_depth > kMostDepth || !are_different(posture.places)) {
     return false;
   }
   if (!is_from_approach(posture.configuration)) return false;
-  return has_stable_pair(posture.patches) && is_clear_of_surroundings(posture);
+  return has_stable_pair(posture.places) && is_clear_of_surroundings(posture);
 }
 
 bool ReachSides::is_clear_of_surroundings(const SurfacePosture& posture) const {
@@ -418,13 +436,13 @@ bool ReachSides::is_clear_of_surroundings(const SurfacePosture& posture) const {
   return true;
 }
 
-std::int32_t ReachSides::point_of(std::int32_t patch) const { return pool_of_patch_[patch]; }
+std::int32_t ReachSides::point_of(std::int32_t place) const { return pool_of_place_[place]; }
 
 TargetSide ReachSides::side_of(const Candidate& candidate) const {
   const hands::HandModel& hand = scene_.hand.model();
   std::vector<std::int32_t> points;
-  for (const std::int32_t patch : candidate.posture.patches) {
-    points.push_back(point_of(patch));
+  for (const std::int32_t place : candidate.posture.places) {
+    points.push_back(point_of(place));
   }
   TargetSide side;
   side.targets = targets_.as_targets(points, std::nullopt, 0);

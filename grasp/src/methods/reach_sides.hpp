@@ -7,6 +7,7 @@
 
 #include "fitting/surface_posture.hpp"
 #include "graspfit/base/random.hpp"
+#include "methods/finger_bones.hpp"
 #include "methods/hand_grips.hpp"
 #include "methods/hand_proposals.hpp"
 #include "methods/place_firmness.hpp"
@@ -27,8 +28,9 @@ namespace graspfit::grasp::internal {
 /// Draws candidates for one object and hand. Const members are safe to call from several threads.
 class ReachSides {
  public:
-  /// Refers to the scene and the targets.
-  ReachSides(const GuidanceScene& scene, const TargetPlaces& targets);
+  /// Refers to all of them; the targets' pool is of the object's places.
+  ReachSides(const GuidanceScene& scene, const std::vector<SurfacePlace>& places,
+             const TargetPlaces& targets);
 
   /// The firmest candidates of a draw, the firmest first, each with its posture
   /// (`TargetSide::goal`), from which it is refined: lifted off the object until it is clear of it.
@@ -73,6 +75,7 @@ class ReachSides {
   std::size_t drawn_grip(const std::vector<Tries>& tries, base::Random& random) const;
   double firmness_of(const Grip& grip, base::Random& random) const;
   std::vector<Candidate> firmest(base::Random& random, double effort) const;
+  bool goes_through_wall(const Grip& grip, const HandProposal& proposal) const;
   std::optional<std::pair<HandProposal, double>> completed(const Grip& grip, HandProposal begun,
                                                            double least) const;
   std::optional<Candidate> drawn(const Grip& grip, double least, base::Random& random,
@@ -87,22 +90,24 @@ class ReachSides {
   std::vector<int> pads_of(const Grip& grip) const;
   bool is_good(const SurfacePosture& posture) const;
   bool is_clear_of_surroundings(const SurfacePosture& posture) const;
-  bool are_apart(const std::vector<std::int32_t>& patches) const;
-  bool has_stable_pair(const std::vector<std::int32_t>& patches) const;
-  std::int32_t point_of(std::int32_t patch) const;
+  bool are_apart(const std::vector<std::int32_t>& places) const;
+  bool has_stable_pair(const std::vector<std::int32_t>& places) const;
+  std::int32_t point_of(std::int32_t place) const;
   TargetSide side_of(const Candidate& candidate) const;
 
   const GuidanceScene& scene_;
+  const std::vector<SurfacePlace>& places_;
   const TargetPlaces& targets_;
   const HandGrips grips_;
-  const NearestPatches nearest_;
-  const NearestPatches places_;  ///< The pool's.
+  const NearestPlaces nearest_;
+  const NearestPlaces nearest_of_pool_;
   const SurfaceSearch search_;
   const Clearance clearance_;
   const TableReach table_;
   const HandProposals proposals_;
   const PlaceFirmness firmness_;
-  std::vector<std::int32_t> pool_of_patch_;  ///< −1 where a patch is not in the pool.
+  const std::optional<FingerBones> bones_;   ///< Where the object has walls thinner than voxels.
+  std::vector<std::int32_t> pool_of_place_;  ///< −1 where a place is not in the pool.
   std::vector<double> shares_;               ///< Per grip: how often it is drawn first.
 };
 

@@ -88,7 +88,8 @@ contact::ContactEstimationOptions contact_estimation(const PlannerOptions& optio
           .averaging = options.averaging,
           .pads = options.counted_pads.value_or(is_precision ? contact::CountedPads::TipsAndPalm
                                                              : contact::CountedPads::All),
-          .pieces = options.contact_pieces};
+          .pieces = options.contact_pieces,
+          .faces = options.contact_faces};
 }
 
 std::optional<double> bearing_gap(const PlannerOptions& options) {

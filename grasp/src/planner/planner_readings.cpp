@@ -153,9 +153,13 @@ std::vector<std::pair<std::string, std::string>> planner_readings(const PlannerO
       {"A33", options.clip_thickness
                   ? "clip volume " + shortest_decimal(*options.clip_thickness) + " m thick"
                   : "clip volume max(0.5 voxel, 1 mm) thick"},
-      {"A34", averaging + (options.contact_pieces == contact::ContactPieces::Joined
-                               ? ", one contact per pad"
-                               : ", pieces far apart are contacts of their own")},
+      {"A34", averaging +
+                  (options.contact_pieces == contact::ContactPieces::Joined
+                       ? ", one contact per pad"
+                       : ", pieces far apart are contacts of their own") +
+                  (options.contact_faces == contact::ContactFaces::All
+                       ? ""
+                       : ", without what looks away from the pad")},
       {"A35", contact_estimation(options, 1.0).pads == contact::CountedPads::All
                   ? text("contacts of all links count")
                   : text("contacts of fingertips and palm count")},

@@ -387,6 +387,11 @@ constexpr auto planner_rows = [](auto& at, auto& options) {
       "surface in a clip volume that does not hang together is one contact, or several where their "
       "middles are farther apart than half the pad's width",
       "joined: P; separate: R"});
+  at(options.contact_faces,
+     {"contact_faces", kAny, "contact-faces", "", kTargets,
+      "surface in a clip volume: all of it, or without what looks away from the pad, as the far "
+      "side of a thin wall does; targets by reach may then be on either side of such a wall",
+      "all: P; facing: R", "A34"});
   at.group("score", options.score, score_rows);
   at.optional_group("weak", options.weak, weak_rows);
   at.group("targets", options.targets, target_rows);

@@ -80,13 +80,20 @@ std::array<std::int32_t, kMostParts> ascending(PointIndices points) {
 }  // namespace
 
 std::vector<PoolPoint> pool_of(const ObjectModel& object, const TargetOptions& options) {
+  return pool_of(object, surface_places(object, false), options);
+}
+
+std::vector<PoolPoint> pool_of(const ObjectModel& object, const std::vector<SurfacePlace>& places,
+                               const TargetOptions& options) {
   std::vector<PoolPoint> pool;
   const bool knows_weak = options.exclude_weak && !object.is_weak_patch.empty();
-  for (std::int32_t p = 0; p < std::ssize(object.patches); ++p) {
-    const geometry::SurfacePatch& patch = object.patches[p];
-    if (!patch.has_normal || !(object.scores.scores[p] > options.score_threshold)) continue;
-    if (knows_weak && object.is_weak_patch[p]) continue;
-    pool.push_back({patch.centroid, -patch.outward_normal, p});
+  for (std::int32_t p = 0; p < std::ssize(places); ++p) {
+    const SurfacePlace& place = places[p];
+    const bool is_side = place.other_side >= 0;
+    const bool is_high = is_side || object.scores.scores[place.patch] > options.score_threshold;
+    if (!place.has_normal || !is_high) continue;
+    if (knows_weak && object.is_weak_patch[place.patch]) continue;
+    pool.push_back({place.point_O, -place.outward_normal_O, place.patch, p});
   }
   if (options.pool_spacing > 0.0) thin(pool, object, options.pool_spacing);
   return pool;

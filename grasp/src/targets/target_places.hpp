@@ -8,6 +8,7 @@
 
 #include "graspfit/contact/contact_quality.hpp"
 #include "graspfit/grasp/target_contacts.hpp"
+#include "object/surface_places.hpp"
 
 namespace graspfit::grasp::internal {
 
@@ -17,10 +18,16 @@ struct PoolPoint {
   Eigen::Vector3d inward_normal_O;
   /// Index into ObjectModel::patches; empty: the point belongs to no patch.
   std::optional<std::int32_t> patch;
+  std::int32_t place = -1;  ///< Of a pool of places, the index of this one.
 };
 
 /// The object's patches that the options allow, ascending.
 std::vector<PoolPoint> pool_of(const ObjectModel& object, const TargetOptions& options);
+
+/// Those of its places, ascending. Sides of thin walls are allowed whatever their patch scores,
+/// whose mean normal means nothing.
+std::vector<PoolPoint> pool_of(const ObjectModel& object, const std::vector<SurfacePlace>& places,
+                               const TargetOptions& options);
 
 /// A set: indices into `TargetPlaces::pool`, the seed first.
 using PointIndices = std::span<const std::int32_t>;

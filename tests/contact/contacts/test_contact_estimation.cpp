@@ -223,6 +223,37 @@ TEST_CASE("Pieces far apart are contacts of their own where that is asked for",
   CHECK(estimate_contacts(wide, X_OL, object, separate).size() == 1);
 }
 
+TEST_CASE("Of a wall thinner than the clip volume the near side is a contact where it is asked for",
+          "[contact][contact_estimation]") {
+  const hands::HandModel hand = pad_hand(1, 0.02, 0.04);
+  const MeshQuery plate(geometry::box({0.2, 0.2, 0.25 * kThickness}));
+  const double top = 0.125 * kThickness;
+  const RigidTransform X_OC = above(0.01, 0.02, top, 0.0005);
+  CHECK_FALSE(estimate_contact(hand, 1, X_OC, plate, kOptions));
+  CHECK_FALSE(has_contact(hand, 1, X_OC, plate, kOptions));
+  ContactEstimationOptions facing_pads = kOptions;
+  facing_pads.faces = ContactFaces::Facing;
+  const auto contact = estimate_contact(hand, 1, X_OC, plate, facing_pads);
+  REQUIRE(contact);
+  CHECK(has_contact(hand, 1, X_OC, plate, facing_pads));
+  CHECK((contact->inward_normal_O + Vector3d::UnitZ()).norm() < kRounding);
+  CHECK((contact->point_O - Vector3d(0.01, 0.02, top)).norm() < kRounding);
+  CHECK(contact->area == Approx(0.02 * 0.04));
+  // A pad on the other side that looks away from the plate, though its clip volume holds it.
+  const RigidTransform behind = facing({0.01, 0.02, top - 0.0001}, Vector3d::UnitZ());
+  CHECK(has_contact(hand, 1, behind, plate, kOptions));
+  CHECK_FALSE(has_contact(hand, 1, behind, plate, facing_pads));
+  // Where nothing looks away, nothing changes: an edge and its wall.
+  const MeshQuery box(geometry::box({0.2, 0.2, 0.2}));
+  const RigidTransform at_edge = above(0.095, 0.0, 0.1, 0.0005);
+  const auto all = estimate_contact(hand, 1, at_edge, box, kOptions);
+  const auto some = estimate_contact(hand, 1, at_edge, box, facing_pads);
+  REQUIRE((all && some));
+  CHECK(all->area == some->area);
+  CHECK(all->point_O == some->point_O);
+  CHECK(all->inward_normal_O == some->inward_normal_O);
+}
+
 TEST_CASE("Contacts of fingertips and palm alone", "[contact][contact_estimation]") {
   // One finger has two pads, the first of which is no fingertip's.
   hands::HandModel hand = pad_hand(2);

@@ -22,14 +22,13 @@ using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+std::vector<internal::SurfacePlace> places_of(const ObjectModel& object) {
+  return internal::surface_places(object, false);
+}
+
+/// Every patch that has a normal.
 std::vector<internal::PoolPoint> all_patches(const ObjectModel& object) {
-  std::vector<internal::PoolPoint> pool;
-  for (std::size_t i = 0; i < object.patches.size(); ++i) {
-    if (!object.patches[i].has_normal) continue;
-    pool.push_back({object.patches[i].centroid, -object.patches[i].outward_normal,
-                    static_cast<std::int32_t>(i)});
-  }
-  return pool;
+  return internal::pool_of(object, TargetOptions{.score_threshold = -1.0, .exclude_weak = false});
 }
 
 /// The pool's patch that is nearest to a point and faces about so.
@@ -54,7 +53,8 @@ TEST_CASE("Contacts beside two opposite places lean by no more than their shifts
   constexpr double kFriction = 0.3;
   const testing::Scene scene(geometry::box(Vector3d(kWidth, 0.09, 0.12)));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceFirmness firmness(scene.object, pool, kFriction);
+  const std::vector<internal::SurfacePlace> all = places_of(scene.object);
+  const internal::PlaceFirmness firmness(scene.object, all, pool, kFriction);
   const Vector3d side(0.5 * kWidth, 0.0, 0.0);
   const std::vector<std::int32_t> patches = {patch_at(pool, side, Vector3d::UnitX()),
                                              patch_at(pool, -side, -Vector3d::UnitX())};
@@ -75,7 +75,8 @@ TEST_CASE("Places where the surface turns count for less than flat ones",
   const double inner = 0.03 * std::cos(std::acos(-1.0) / 6.0);
   const testing::Scene scene(geometry::cylinder(0.03, 0.10, 6));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceFirmness firmness(scene.object, pool, 0.9);
+  const std::vector<internal::SurfacePlace> all = places_of(scene.object);
+  const internal::PlaceFirmness firmness(scene.object, all, pool, 0.9);
   const auto places = [&](double beside) {
     std::vector<std::int32_t> patches;
     for (int k = 0; k < 3; ++k) {
@@ -100,7 +101,8 @@ TEST_CASE("Places where the surface turns count for less than flat ones",
 TEST_CASE("The firmness of places is that of point contacts there", "[grasp][place_firmness]") {
   const testing::Scene scene(geometry::capsule(0.03, 0.06));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceFirmness firmness(scene.object, pool, 0.4);
+  const std::vector<internal::SurfacePlace> all = places_of(scene.object);
+  const internal::PlaceFirmness firmness(scene.object, all, pool, 0.4);
   const contact::WrenchObject object =
       contact::wrench_object(scene.object.mesh(), scene.object.mass.center_of_mass);
   base::Random random(2);
@@ -143,7 +145,8 @@ TEST_CASE("What is expected ends early only where it is no more than what is ask
           "[grasp][place_firmness]") {
   const testing::Scene scene(geometry::capsule(0.03, 0.06));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceFirmness firmness(scene.object, pool, 0.6);
+  const std::vector<internal::SurfacePlace> all = places_of(scene.object);
+  const internal::PlaceFirmness firmness(scene.object, all, pool, 0.6);
   base::Random random(7);
   int num_exceeding = 0;
   int num_early = 0;
@@ -173,7 +176,8 @@ TEST_CASE("What is expected ends early only where it is no more than what is ask
 TEST_CASE("Two contacts at one place have the least firmness", "[grasp][place_firmness]") {
   const testing::Scene scene(geometry::ball(0.03));
   const std::vector<internal::PoolPoint> pool = all_patches(scene.object);
-  const internal::PlaceFirmness firmness(scene.object, pool, 0.6);
+  const std::vector<internal::SurfacePlace> all = places_of(scene.object);
+  const internal::PlaceFirmness firmness(scene.object, all, pool, 0.6);
   const std::int32_t first = *pool.front().patch;
   const double twice = firmness.nominal({first, first}, -kInfinity);
   for (const internal::PoolPoint& point : pool) {

@@ -1,4 +1,4 @@
-// What targets by reach are made of: nearest patches, pairs of pads, grips, postures.
+// What targets by reach are made of: nearest places, pairs of pads, grips, postures.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,8 @@
 #include "methods/hand_grips.hpp"
 #include "methods/hand_proposals.hpp"
 #include "methods/table_reach.hpp"
-#include "object/nearest_patches.hpp"
+#include "object/nearest_places.hpp"
+#include "object/surface_places.hpp"
 #include "support/catch.hpp"
 
 namespace test_reach_parts {
@@ -31,13 +32,14 @@ using Eigen::Vector3d;
 
 }  // namespace
 
-TEST_CASE("The patch of a voxel is nearly the nearest one, and its own where it has one",
-          "[grasp][nearest_patches]") {
+TEST_CASE("The place of a voxel is nearly the nearest one, and its own where it has one",
+          "[grasp][nearest_places]") {
   const testing::Scene scene(geometry::capsule(0.03, 0.06));
   const ObjectModel& object = scene.object;
   std::vector<bool> is_meant(object.patches.size(), true);
   for (std::size_t i = 0; i < is_meant.size(); ++i) is_meant[i] = i % 3 != 0;
-  const internal::NearestPatches nearest(object, is_meant);
+  const std::vector<internal::SurfacePlace> places = internal::surface_places(object, false);
+  const internal::NearestPlaces nearest(object, places, is_meant);
   const geometry::VoxelLattice& lattice = object.grid.lattice;
   base::Random random(5);
   for (int trial = 0; trial < 2000; ++trial) {
@@ -125,14 +127,15 @@ TEST_CASE("Jaws may lean where that is allowed, fingers face what they pinch",
 TEST_CASE("The cheapest hand is found with or without knowing what another costs",
           "[grasp][hand_proposals]") {
   const testing::Scene scene(geometry::capsule(0.03, 0.06));
-  std::vector<bool> all(scene.object.patches.size(), true);
-  const internal::NearestPatches places(scene.object, all);
+  const std::vector<internal::SurfacePlace> places = internal::surface_places(scene.object, false);
+  const internal::NearestPlaces nearest(scene.object, places,
+                                        std::vector<bool>(places.size(), true));
   const internal::TargetPlaces targets(scene.object, scene.parts, TargetOptions(),
                                        internal::pool_of(scene.object, TargetOptions()));
   const internal::HandGrips grips(scene.hand, scene.parts, internal::GripRule());
   const SurroundingsCollision nothing(scene.hand, {});
   const internal::TableReach table(scene.hand, nothing, {});
-  const internal::HandProposals proposals(scene.hand, scene.object, targets, grips, places, table);
+  const internal::HandProposals proposals(scene.hand, places, targets, grips, nearest, table);
   const internal::HandGrips::Grip& grip = grips.grips().front();
   base::Random random(4);
   int num_drawn = 0;
@@ -315,10 +318,12 @@ TEST_CASE("Coarse distances are those of the map, rounded down", "[grasp][surfac
 
 TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface_posture]") {
   const testing::Scene scene(geometry::capsule(0.04, 0.08));
-  const std::vector<bool> all(scene.object.patches.size(), true);
-  const internal::NearestPatches nearest(scene.object, all);
+  const std::vector<internal::SurfacePlace> places = internal::surface_places(scene.object, false);
+  const std::vector<bool> all(places.size(), true);
+  const internal::NearestPlaces nearest(scene.object, places, all);
   const SurroundingsCollision nothing(scene.hand, {});
-  const internal::SurfaceSearch search(scene.fitting_hand, scene.object, nearest, nearest, nothing);
+  const internal::SurfaceSearch search(scene.fitting_hand, scene.object, places, nearest, nearest,
+                                       nothing);
   const std::vector<int> pads = requested_pads(scene.hand, scene.parts);
   base::Random random(1);
   int num_laid = 0;
@@ -343,13 +348,13 @@ TEST_CASE("Pads are laid onto the surface, and links leave it", "[grasp][surface
         Vector3d(0.13, 0.0, 0.0) +
         0.01 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const internal::SurfacePosture posture = search.lay(pads, start);
-    REQUIRE(posture.patches.size() == pads.size());
+    REQUIRE(posture.places.size() == pads.size());
     // What is worth the work is laid as without being asked, what is not is left on the way.
     int num_asked = 0;
     const auto is_worth_it = [&](bool answer) {
-      return [&num_asked, &pads, answer](const std::vector<std::int32_t>& patches) {
+      return [&num_asked, &pads, answer](const std::vector<std::int32_t>& on_places) {
         ++num_asked;
-        CHECK(patches.size() == pads.size());
+        CHECK(on_places.size() == pads.size());
         return answer;
       };
     };

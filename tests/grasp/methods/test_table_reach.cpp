@@ -4,6 +4,7 @@
 #include <set>
 
 #include "fitting/surface_posture.hpp"
+#include "grasp/posed_box.hpp"
 #include "grasp/reach_options.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -41,14 +42,7 @@ Surroundings table() {
 }
 
 double lowest_of(const hands::HandModel& hand, const hands::HandConfiguration& configuration) {
-  double lowest = 1.0;
-  const auto X_OL = hands::forward_kinematics(hand, configuration);
-  for (std::size_t link = 0; link < X_OL.size(); ++link) {
-    for (const Vector3d& vertex : hand.links[link].mesh_L.vertices) {
-      lowest = std::min(lowest, (X_OL[link] * vertex).z());
-    }
-  }
-  return lowest;
+  return testing::posed_box(hand, configuration).min().z();
 }
 
 }  // namespace
@@ -118,19 +112,11 @@ TEST_CASE("Whether samples of a hand are above the table is known to 5 mm",
   const std::vector<int> chain = hands::links_to(hand, hand.pads[pad].link);
   // The lowest vertex of some links, by kinematics of the whole hand.
   const auto lowest = [&](const hands::HandConfiguration& configuration, bool is_palm) {
-    const auto X_OL = hands::forward_kinematics(hand, configuration);
-    double z = 1.0;
-    for (std::size_t link = 0; link < X_OL.size(); ++link) {
-      const int index = static_cast<int>(link);
-      const bool is_fixed = hands::joints_to(hand, index).empty();
-      if (is_palm ? !is_fixed : is_fixed || std::count(chain.begin(), chain.end(), index) == 0) {
-        continue;
-      }
-      for (const Vector3d& vertex : hand.links[link].mesh_L.vertices) {
-        z = std::min(z, (X_OL[link] * vertex).z());
-      }
-    }
-    return z;
+    const auto counts = [&](int link) {
+      const bool is_fixed = hands::joints_to(hand, link).empty();
+      return is_palm ? is_fixed : !is_fixed && std::count(chain.begin(), chain.end(), link) > 0;
+    };
+    return testing::posed_box(hand, configuration, counts).min().z();
   };
   base::Random random(3);
   constexpr double kSeen = 0.005 - 0.001;  // below the table and its clearance [m]
@@ -175,11 +161,13 @@ TEST_CASE("Links leave the table while pads are laid", "[grasp][surface_posture]
   const PlannerOptions options = reach_options(GraspStyle::Precision, 1);
   const ObjectModel object = prepare_object(bar(), hand, options);
   const FittingHand fitting_hand(hand, 0.5 * object.grid.lattice.voxel_size);
-  const internal::NearestPatches nearest(object, std::vector<bool>(object.patches.size(), true));
+  const std::vector<internal::SurfacePlace> places = internal::surface_places(object, false);
+  const internal::NearestPlaces nearest(object, places, std::vector<bool>(places.size(), true));
   const SurroundingsCollision nothing(hand, {});
   const SurroundingsCollision above(hand, table());
-  const internal::SurfaceSearch free_search(fitting_hand, object, nearest, nearest, nothing);
-  const internal::SurfaceSearch search(fitting_hand, object, nearest, nearest, above);
+  const internal::SurfaceSearch free_search(fitting_hand, object, places, nearest, nearest,
+                                            nothing);
+  const internal::SurfaceSearch search(fitting_hand, object, places, nearest, nearest, above);
   const std::vector<int> pads = {*hand.fingers[0].tip_pad, *hand.fingers[1].tip_pad};
   base::Random random(1);
   int num_free_below = 0;

@@ -33,6 +33,7 @@ TEST_CASE("Every choice has a name that is read back, and no two share one",
   check(grasp::PalmAfterContact{});
   check(contact::CountedPads{});
   check(contact::ContactPieces{});
+  check(contact::ContactFaces{});
   check(grasp::ApproachSource{});
   check(geometry::PatchAveraging{});
   check(grasp::ScoreNormalization{});

@@ -27,6 +27,7 @@ using internal::FacesInVolume;
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kSmallestMeanNormal = 0.1;  // A shorter mean says that the normals cancel.
+constexpr double kLooksAway = 0.5;  // least cosine between outward normal and pressing direction
 
 /// What the estimation needs besides a pad and the pieces of surface in its clip volume.
 struct Scene {
@@ -71,6 +72,21 @@ SurfaceMean mean_over(const std::vector<ClippedPiece>& pieces, const Group& grou
   return mean;
 }
 
+/// Faces that may have area in the pad's clip volume and that count.
+FacesInVolume counted_faces(const hands::ContactPad& pad, const RigidTransform& X_OC,
+                            const geometry::MeshQuery& object,
+                            const ContactEstimationOptions& options) {
+  FacesInVolume faces = internal::faces_in_clip_volume(pad, options.clip_thickness, X_OC, object);
+  if (options.faces == ContactFaces::All) return faces;
+  const Vector3d pressing_O = X_OC.linear().col(2);
+  const auto looks_away = [&](std::int32_t face) {
+    return geometry::face_normal(object.mesh(), face).dot(pressing_O) > kLooksAway;
+  };
+  std::erase_if(faces.inside, looks_away);
+  std::erase_if(faces.cut, [&](const CutFace& cut) { return looks_away(cut.face); });
+  return faces;
+}
+
 /// Pieces that make one contact together.
 std::vector<Group> contact_groups(const std::vector<ClippedPiece>& pieces,
                                   const hands::ContactPad& pad, const Scene& scene) {
@@ -113,8 +129,8 @@ geometry::TriangleMesh faces_of(const std::vector<ClippedPiece>& pieces, const G
 std::vector<Contact> contacts_of(int pad_index, const RigidTransform& X_OC, const Scene& scene) {
   const hands::ContactPad& pad = scene.hand.pads[pad_index];
   const geometry::TriangleMesh& mesh = scene.object.mesh();
-  const std::vector<ClippedPiece> pieces = internal::clipped_surface(
-      internal::faces_in_clip_volume(pad, scene.options.clip_thickness, X_OC, scene.object), mesh);
+  const std::vector<ClippedPiece> pieces =
+      internal::clipped_surface(counted_faces(pad, X_OC, scene.object, scene.options), mesh);
   const std::vector<Group> groups = contact_groups(pieces, pad, scene);
   const RigidTransform X_CO = geometry::inverted(X_OC);
   std::vector<Contact> contacts;
@@ -211,8 +227,7 @@ bool has_contact(const hands::HandModel& hand, int pad, const RigidTransform& X_
   require_pad(hand, pad);
   const geometry::TriangleMesh& mesh = object.mesh();
   const hands::ContactPad& description = hand.pads[pad];
-  const FacesInVolume faces =
-      internal::faces_in_clip_volume(description, options.clip_thickness, X_OC, object);
+  const FacesInVolume faces = counted_faces(description, X_OC, object, options);
   if (faces.inside.empty() && faces.cut.empty()) return false;
   if (!are_normals_alike(faces, mesh)) {
     const Scene scene{hand, object, options, nullptr};

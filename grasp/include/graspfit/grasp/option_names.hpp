@@ -93,6 +93,10 @@ inline constexpr std::array kNames<contact::ContactPieces> = {
     NamedValue{contact::ContactPieces::Joined, "joined"},
     NamedValue{contact::ContactPieces::Separate, "separate"}};
 template <>
+inline constexpr std::array kNames<contact::ContactFaces> = {
+    NamedValue{contact::ContactFaces::All, "all"},
+    NamedValue{contact::ContactFaces::Facing, "facing"}};
+template <>
 inline constexpr std::array kNames<geometry::PatchAveraging> = {
     NamedValue{geometry::PatchAveraging::AreaWeighted, "area-weighted"},
     NamedValue{geometry::PatchAveraging::Plain, "plain"}};

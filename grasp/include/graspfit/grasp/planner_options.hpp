@@ -152,6 +152,9 @@ struct PlannerOptions {
   /// touch], and with `GraspStyle::Auto`, else those of fingertips and palm [R].
   std::optional<contact::CountedPads> counted_pads;
   contact::ContactPieces contact_pieces = contact::ContactPieces::Joined;
+  /// With `Facing`, `TargetSearch::Reach` also takes the two sides of a wall that is thinner than a
+  /// voxel as two places [R].
+  contact::ContactFaces contact_faces = contact::ContactFaces::All;
   ScoreOptions score;
   /// Fragile features (S of M1; never targets by `targets.exclude_weak`); empty: none are looked
   /// for and S = 1 everywhere.

@@ -27,6 +27,13 @@ enum class ContactPieces {
              ///< neither.
 };
 
+/// Which faces in a clip volume are surface that the pad may touch.
+enum class ContactFaces {
+  All,     ///< All [P: what the volume holds].
+  Facing,  ///< Those that do not look away from the pad, by more than 120 degrees from facing it
+           ///< [R]: of a thin wall the near side alone.
+};
+
 /// Parameters of contact estimation (paper section 10).
 struct ContactEstimationOptions {
   double clip_thickness = 0.0;  ///< Thickness of the clip volumes of pads that state none [m], > 0.
@@ -34,6 +41,7 @@ struct ContactEstimationOptions {
   geometry::PatchAveraging averaging = geometry::PatchAveraging::AreaWeighted;  ///< [R]
   CountedPads pads = CountedPads::All;
   ContactPieces pieces = ContactPieces::Joined;
+  ContactFaces faces = ContactFaces::All;
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
 };
 
@@ -49,9 +57,10 @@ struct ContactEstimationOptions {
 /// `weak_regions`, and where the weak regions are unknown (`WeakOutcome::TooCoarse`). `is_target`
 /// is left at its default. Surface behind the pad's plane does not count; surface inside the bulge
 /// of a curved pad counts, although the link has entered the object there. Walls inside the volume
-/// count with their area whichever way they face. The numbers are rounded, but which triangles are
-/// cut is decided exactly on the clip volume's half-spaces as rounded to frame O. The cost is a box
-/// query where nothing is near, and otherwise linear in the number of triangles near the pad.
+/// count with their area whichever way they face, or as `options.faces` says. The numbers are
+/// rounded, but which triangles are cut is decided exactly on the clip volume's half-spaces as
+/// rounded to frame O. The cost is a box query where nothing is near, and otherwise linear in the
+/// number of triangles near the pad.
 /// @throws InvalidInput for bad options, a pad that the hand does not have, a pose that is not
 /// finite, or weak regions of another mesh (another number of faces).
 std::optional<Contact> estimate_contact(const hands::HandModel& hand, int pad,
