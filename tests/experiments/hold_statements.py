@@ -72,6 +72,14 @@ def hold_rates(tables):
            f"{lost['lost_before_load']} before it")
 
 
+def least_held(rows, held, name):
+    """Yields for each hand the cells in which at most half of the attempts are held, fewest first."""
+    for grip, group in rows.groupby("grip", sort=False):
+        few = group[group[held] <= group["attempts"] / 2].sort_values(held, kind="stable")
+        named = ", ".join(f"{name(row)} {int(row[held])}" for _, row in few.iterrows())
+        yield f"{HANDS[grip]}: {named or 'none'}"
+
+
 def hold_default(tables):
     rows = tables.table("hold_default")
     details = tables.table("hold_default.details")
@@ -83,10 +91,7 @@ def hold_default(tables):
         cells = " | ".join(f"{number} ({percent(number / attempts)}, {interval(number, attempts)})" for number in held)
         yield (f"| {HANDS[grip]} | {attempts} | {int(group['valid'].sum())} | {closed} | {cells} "
                f"| {seconds[grip] / attempts:.2f} |")
-    for grip, group in rows.groupby("grip", sort=False):
-        few = group[group["normal_held"] <= group["attempts"] / 2].sort_values("normal_held", kind="stable")
-        named = ", ".join(f"{object_name(row['object'])} {row['normal_held']}" for _, row in few.iterrows())
-        yield f"{HANDS[grip]}: {named or 'none'}"
+    yield from least_held(rows, "normal_held", lambda row: object_name(row["object"]))
     yield from lost_attempts(rows)
 
 
@@ -114,10 +119,8 @@ def from_table(tables):
         sums = " | ".join(str(int(group[name].sum())) for name in ("valid", "closed", "lift_held", "normal_held"))
         yield (f"| {HANDS[grip]} | {len(group)} | {attempts} | {sums} | {both} ({percent(both / attempts)}, {interval(both, attempts)}) "
                f"| {group['plan_s'].sum() / attempts:.2f} |")
-    for grip, group in counted.groupby("grip", sort=False):
-        few = group[group["both"] <= group["attempts"] / 2].sort_values("both", kind="stable")
-        named = ", ".join(f"{table_object(row)} {int(row['both'])}" for _, row in few.iterrows())
-        yield f"- {HANDS[grip]}: {named or 'none'}"
+    for line in least_held(counted, "both", table_object):
+        yield f"- {line}"
     low = table[table["height_m"] < LEAST_HEIGHT]
     for (name, pose), group in low.groupby(["object", "rest_pose"], sort=False):
         held = ", ".join(f"{HANDS[row['grip']]} {int(row['both'])}" for _, row in group.iterrows())

@@ -6,6 +6,7 @@
 #include "fitting/surface_posture.hpp"
 #include "grasp/posed_box.hpp"
 #include "grasp/reach_options.hpp"
+#include "grasp/sample_pose.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/shapes.hpp"
 #include "graspfit/grasp/grasp_planner.hpp"
@@ -124,17 +125,8 @@ TEST_CASE("Whether samples of a hand are above the table is known to 5 mm",
   int num_above = 0;
   for (int trial = 0; trial < 400; ++trial) {
     const auto sample = static_cast<std::int32_t>(random.index(samples[0].size()));
-    hands::HandConfiguration configuration = hands::open_configuration(hand);
-    for (std::size_t j = 0; j < samples[0].joints.size(); ++j) {
-      configuration.q[samples[0].joints[j]] =
-          samples[0].positions(static_cast<Eigen::Index>(j), sample);
-    }
-    hands::apply_couplings(hand, configuration.q);
-    configuration.X_OH.linear() =
-        Eigen::Quaterniond(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0),
-                           random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0))
-            .normalized()
-            .toRotationMatrix();
+    hands::HandConfiguration configuration =
+        testing::turned_sample(hand, samples[0], sample, random);
     configuration.X_OH.translation().z() = random.uniform(0.0, 0.15);
     const double finger = lowest(configuration, false);
     const double palm = lowest(configuration, true);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grasp/reach_options.hpp"
+#include "grasp/sample_pose.hpp"
 #include "graspfit/base/random.hpp"
 #include "graspfit/geometry/everyday_shapes.hpp"
 #include "graspfit/geometry/shapes.hpp"
@@ -205,16 +206,8 @@ TEST_CASE("Lines in fingers tell where these go through a wall", "[grasp][finger
     const internal::FingerBones bones(hand, box, {&samples[0]});
     for (int trial = 0; trial < 300; ++trial) {
       const auto sample = static_cast<std::int32_t>(random.index(samples[0].size()));
-      hands::HandConfiguration configuration = hands::open_configuration(hand);
-      for (std::size_t j = 0; j < samples[0].joints.size(); ++j) {
-        configuration.q[samples[0].joints[j]] =
-            samples[0].positions(static_cast<Eigen::Index>(j), sample);
-      }
-      hands::apply_couplings(hand, configuration.q);
-      configuration.X_OH.linear() = Eigen::Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1),
-                                                       random.uniform(-1, 1), random.uniform(-1, 1))
-                                        .normalized()
-                                        .toRotationMatrix();
+      hands::HandConfiguration configuration =
+          testing::turned_sample(hand, samples[0], sample, random);
       for (double& x : configuration.X_OH.translation()) x = random.uniform(-0.06, 0.06);
       const auto X_OL = hands::forward_kinematics(hand, configuration);
       bool is_free = true;
