@@ -1,6 +1,7 @@
 #include "object/surface_places.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -21,6 +22,11 @@ using geometry::TriangleMesh;
 // tube 0.64.
 constexpr double kLongestMean = 0.7;
 constexpr double kLargestCosine = -0.5;  // between the sides' normals
+// Of the other patches in a window of so many voxels to every side at least this share must face as
+// a side of a wall does.
+constexpr int kWindow = 2;
+constexpr double kAlike = 0.8;
+constexpr double kLeastShare = 0.5;
 
 struct Side {
   Vector3d vector_area = Vector3d::Zero();
@@ -79,15 +85,50 @@ std::optional<std::pair<SurfacePlace, SurfacePlace>> sides_of(const TriangleMesh
   return std::pair(a, b);
 }
 
+using Sides = std::vector<std::optional<std::pair<SurfacePlace, SurfacePlace>>>;
+
+/// Whether most of the surface in the window about a patch faces as one side of it does, or as the
+/// other: on a wall, not on the lip of a can.
+bool is_on_wall(const ObjectModel& object, const Sides& sides, std::int32_t patch) {
+  const geometry::VoxelLattice& lattice = object.grid.lattice;
+  const Eigen::Vector3i center = lattice.voxel(object.patches[patch].voxel);
+  const Eigen::Vector3i low = (center.array() - kWindow).max(0);
+  const Eigen::Vector3i high = (center.array() + kWindow).min(lattice.counts.array() - 1);
+  int num_all = 0;
+  int num_like_first = 0;
+  int num_like_second = 0;
+  for (int z = low[2]; z <= high[2]; ++z) {
+    for (int y = low[1]; y <= high[1]; ++y) {
+      for (int x = low[0]; x <= high[0]; ++x) {
+        const auto other = object.patch_in(lattice.index({x, y, z}));
+        if (!other || *other == patch) continue;
+        ++num_all;
+        const auto is_like = [&](const Vector3d& normal) {
+          if (!sides[*other]) return object.patches[*other].outward_normal.dot(normal) > kAlike;
+          return std::max(sides[*other]->first.outward_normal_O.dot(normal),
+                          sides[*other]->second.outward_normal_O.dot(normal)) > kAlike;
+        };
+        num_like_first += is_like(sides[patch]->first.outward_normal_O) ? 1 : 0;
+        num_like_second += is_like(sides[patch]->second.outward_normal_O) ? 1 : 0;
+      }
+    }
+  }
+  return std::min(num_like_first, num_like_second) >= kLeastShare * num_all;
+}
+
 }  // namespace
 
 std::vector<SurfacePlace> surface_places(const ObjectModel& object, bool splits_walls) {
   std::vector<SurfacePlace> places;
   std::vector<SurfacePlace> others;
+  Sides all(object.patches.size());
+  for (std::size_t i = 0; i < all.size() && splits_walls; ++i) {
+    all[i] = sides_of(object.mesh(), object.patches[i]);
+  }
   for (std::int32_t i = 0; i < std::ssize(object.patches); ++i) {
     const SurfacePatch& patch = object.patches[i];
-    const auto sides = splits_walls ? sides_of(object.mesh(), patch) : std::nullopt;
-    if (!sides) {
+    const auto& sides = all[i];
+    if (!sides || !is_on_wall(object, all, i)) {
       places.push_back({patch.centroid, patch.outward_normal, patch.has_normal, i});
       continue;
     }

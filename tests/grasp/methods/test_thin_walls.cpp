@@ -112,6 +112,20 @@ TEST_CASE("Where no wall is thin, places are the patches", "[grasp][surface_plac
   CHECK(internal::surface_places(plate(), false).size() == plate().patches.size());
 }
 
+TEST_CASE("A thin rim on a block is no wall", "[grasp][surface_places]") {
+  // A fin as thin as the plate, one and a half voxels high, along the middle of a block's top.
+  const geometry::TriangleMesh block = geometry::box(Vector3d(0.09, 0.09, 0.03));
+  const geometry::TriangleMesh fin = geometry::box(Vector3d(0.08, kThickness, 0.0055));
+  const ObjectModel object = build_object_model(
+      joined(block, moved(fin, Vector3d(0.0, 0.0015, 0.015 + 0.00225))), {.resolution = 30});
+  const auto num_of_fin =
+      std::count_if(object.patches.begin(), object.patches.end(), [](const auto& patch) {
+        return patch.area_centroid.z() > 0.0155 && patch.area_weighted_normal.norm() < 0.7;
+      });
+  CHECK(num_of_fin > 20);
+  CHECK(num_sides(internal::surface_places(object, true)) == 0);
+}
+
 TEST_CASE("The sides of a gap are no sides of a wall", "[grasp][surface_places]") {
   // Two blocks with a slit between them, both of whose sides are in one layer of voxels.
   const geometry::TriangleMesh block = geometry::box(Vector3d(0.05, 0.05, 0.030));
