@@ -51,9 +51,11 @@ class FittingGuidance : public GraspGuidance {
     if (targets.search == TargetSearch::Reach) {
       surface_ = surface_places(scene.object,
                                 scene.options.contact_faces == contact::ContactFaces::Facing);
-      places_.emplace(scene.object, scene.parts, targets,
-                      touchable_above_table(pool_of(scene.object, surface_, targets),
-                                            scene.hand.model(), scene.surroundings));
+      std::vector<PoolPoint> pool = touchable_above_table(pool_of(scene.object, surface_, targets),
+                                                          scene.hand.model(), scene.surroundings);
+      pool = carrying_above_table(std::move(pool), scene.object.mass.center_of_mass,
+                                  scene.surroundings);
+      places_.emplace(scene.object, scene.parts, targets, std::move(pool));
       reach_.emplace(scene_, surface_, *places_);
       return;
     }

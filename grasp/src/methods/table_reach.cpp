@@ -23,6 +23,7 @@ constexpr double kMostBelow = 0.005;  // of a proposal's links, which are laid l
 constexpr int kAngles = 46;           // of a normal against up, over half a turn
 constexpr int kLeanSteps = 8;         // of these angles: 30 degrees or so
 constexpr int kTurns = 24;            // about the normal
+constexpr double kMostLever = 0.12;   // beyond the least one [m]
 
 /// Per angle between up and the direction in which pads press: how far below where it touches the
 /// link of that pad reaches that reaches least far [m].
@@ -164,6 +165,19 @@ std::vector<PoolPoint> touchable_above_table(std::vector<PoolPoint> pool,
     const auto i = static_cast<std::size_t>(std::lround(angle / std::numbers::pi * (kAngles - 1)));
     return point.point_O.z() - floor < depths[i];
   });
+  return pool;
+}
+
+std::vector<PoolPoint> carrying_above_table(std::vector<PoolPoint> pool,
+                                            const Vector3d& center_of_mass_O,
+                                            const SurroundingsCollision& surroundings) {
+  if (!surroundings.surroundings().table_z_O || pool.empty()) return pool;
+  const auto lever = [&](const PoolPoint& point) {
+    return (point.point_O - center_of_mass_O).head<2>().norm();
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (const PoolPoint& point : pool) least = std::min(least, lever(point));
+  std::erase_if(pool, [&](const PoolPoint& point) { return lever(point) > least + kMostLever; });
   return pool;
 }
 

@@ -54,4 +54,11 @@ std::vector<PoolPoint> touchable_above_table(std::vector<PoolPoint> pool,
                                              const hands::HandModel& hand,
                                              const SurroundingsCollision& surroundings);
 
+/// Those points by which the object can be carried well: by its weight and by pushes it turns in
+/// the hand the more the farther they are from its center of mass, so that those stay that are no
+/// more than 0.12 m farther, along the table, than the nearest one [R]. All without a table.
+std::vector<PoolPoint> carrying_above_table(std::vector<PoolPoint> pool,
+                                            const Eigen::Vector3d& center_of_mass_O,
+                                            const SurroundingsCollision& surroundings);
+
 }  // namespace graspfit::grasp::internal

@@ -103,6 +103,24 @@ TEST_CASE("Places that no pad reaches above the table are no targets", "[grasp][
   CHECK(internal::touchable_above_table(pool, hand, nothing).size() == pool.size());
 }
 
+TEST_CASE("What is long is carried near its center of mass", "[grasp][table_reach]") {
+  const hands::HandModel hand = hands::find_hand("parallel_gripper");
+  const SurroundingsCollision above(hand, table());
+  // A frame whose center is empty: along the table the nearest point is 0.1 m away.
+  const Vector3d center(0.4, 0.0, 0.05);
+  std::vector<PoolPoint> pool;
+  for (const double x : {0.4 + 0.1, 0.4 - 0.21, 0.4 + 0.23, 0.4 - 1.0}) {
+    pool.push_back({Vector3d(x, 0.0, 2.0), -Vector3d::UnitZ(), 0});
+  }
+  const std::vector<PoolPoint> left = internal::carrying_above_table(pool, center, above);
+  REQUIRE(left.size() == 2);
+  CHECK(left[0].point_O == pool[0].point_O);
+  CHECK(left[1].point_O == pool[1].point_O);
+  const SurroundingsCollision nothing(hand, {});
+  CHECK(internal::carrying_above_table(pool, center, nothing).size() == pool.size());
+  CHECK(internal::carrying_above_table({}, center, above).empty());
+}
+
 TEST_CASE("Whether samples of a hand are above the table is known to 5 mm",
           "[grasp][table_reach]") {
   const hands::HandModel hand = hands::find_hand("barrett");
