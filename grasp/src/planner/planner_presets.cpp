@@ -41,6 +41,7 @@ const std::vector<PlannerPreset>& planner_presets() {
         {"keep", named("firmest")},
         {"max-redraws", std::int64_t{5}},
         {"idle-fingers", named("close")},
+        {"contact-faces", named("facing")},
         {"count", std::int64_t{5}},
         {"search", named("closed")},
         {"rank", named("epsilon")}}}};

@@ -60,11 +60,12 @@ TEST_CASE("Presets set what they are for and nothing else", "[grasp][planner_pre
   CHECK(strong.kept == KeptCandidate::Firmest);
   CHECK(strong.max_redraws == 5);
   CHECK(strong.idle_fingers == IdleFingers::Close);
+  CHECK(strong.contact_faces == graspfit::contact::ContactFaces::Facing);
   CHECK(strong.count == 5);
   CHECK(strong.search == SearchRule::Closed);
   CHECK(strong.rank == RankRule::Epsilon);
   CHECK(strong.refine);
-  CHECK(preset_named("strong")->values.size() == 8);
+  CHECK(preset_named("strong")->values.size() == 9);
   CHECK(preset_named("fast")->values.size() == 1);
   CHECK(preset_named("exact")->values.empty());
   CHECK(paper.rank == RankRule::M);
