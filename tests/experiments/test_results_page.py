@@ -46,7 +46,7 @@ SECTIONS = {
     ),
     "## How many are picked up from a table": (
         hold_statements.from_table,
-        (*PROTOCOLS, r"(of |: |the )20 (attempts|each)", r"95 % interval", r"100 g", r"0\.1 m", r"30 mm", r"1\.5 m", r"1 N", r"160 mm", r"85 mm", r"60 mm", r"50 to 75°"),
+        (*PROTOCOLS, r"(of |: |the )20 (attempts|each)", r"95 % interval", r"100 g", r"0\.1 m", r"30 mm", r"1\.5 m", r"1\.2 mm", r"1 N", r"160 mm", r"85 mm", r"60 mm", r"50 to 75°"),
     ),
     "## What predicts that a grasp holds": (
         hold_statements.hold_prediction,
@@ -56,7 +56,7 @@ SECTIONS = {
         hold_statements.hold_choices,
         (*PROTOCOLS, r"of 20 attempts each", r"[Ss]trongest of (4|24)"),
     ),
-    FIRST_OF_PAPER: (statements.made_by, (r"\b6464d50\b", r"\b76d486d\b", r"\b7a1e452\b")),
+    FIRST_OF_PAPER: (statements.made_by, (r"\b6464d50\b", r"\b76d486d\b", r"\b7a1e452\b", r"\beec3cc1\b")),
     "## Table tidying (Fig. 20)": (statements.table_tidying, (r"`contacts` 2", r"10 mm", r"0\.3 m")),
     "## Special cases": (
         lambda tables: [*statements.special_cases(tables), *statements.force_closure(tables)],
