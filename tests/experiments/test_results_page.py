@@ -46,7 +46,7 @@ SECTIONS = {
     ),
     "## How many are picked up from a table": (
         hold_statements.from_table,
-        (*PROTOCOLS, r"(of |: |the )20 (attempts|each)", r"95 % interval", r"100 g", r"0\.1 m", r"30 mm", r"1\.5 m", r"1\.2 mm", r"1 N", r"160 mm", r"85 mm", r"60 mm", r"50 to 75°"),
+        (*PROTOCOLS, r"(of |: |the )20 (attempts|each)", r"95 % interval", r"100 g", r"0\.1 m", r"30 mm", r"1\.5 m", r"\b1 mm", r"1 N", r"160 mm", r"85 mm", r"60 mm", r"50 to 75°"),
     ),
     "## What predicts that a grasp holds": (
         hold_statements.hold_prediction,

@@ -19,7 +19,8 @@ struct SurfacePlace {
 
 /// The object's patches as places, in their order. Where a wall, a fin or a tube is so thin that
 /// both of its sides are in one voxel, whose mean normal says nothing, the patch's place is one
-/// side, and the other one is among further places that follow.
+/// side, and the other one is among further places that follow: on walls, where at least half of
+/// the surface in 5 x 5 x 5 voxels about it faces as each side does, and not on rims [R].
 /// @param splits_walls false: patches as they are, none follow
 std::vector<SurfacePlace> surface_places(const ObjectModel& object, bool splits_walls);
 

@@ -46,6 +46,13 @@ double lowest_of(const hands::HandModel& hand, const hands::HandConfiguration& c
   return testing::posed_box(hand, configuration).min().z();
 }
 
+/// That the first two points of a pool are left of it.
+void require_first_two(const std::vector<PoolPoint>& left, const std::vector<PoolPoint>& pool) {
+  REQUIRE(left.size() == 2);
+  CHECK(left[0].point_O == pool[0].point_O);
+  CHECK(left[1].point_O == pool[1].point_O);
+}
+
 }  // namespace
 
 TEST_CASE("Hands pick up a low bar from a table, with room below them", "[grasp][table_reach]") {
@@ -95,10 +102,7 @@ TEST_CASE("Places that no pad reaches above the table are no targets", "[grasp][
                                        place({0.017, 0.0, 0.018}, {-1.0, 0.0, 0.0}),
                                        place({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}),  // the bottom
                                        place({0.017, 0.0, 0.001}, {-1.0, 0.0, 0.0})};
-  const std::vector<PoolPoint> left = internal::touchable_above_table(pool, hand, above);
-  REQUIRE(left.size() == 2);
-  CHECK(left[0].point_O == pool[0].point_O);
-  CHECK(left[1].point_O == pool[1].point_O);
+  require_first_two(internal::touchable_above_table(pool, hand, above), pool);
   const SurroundingsCollision nothing(hand, {});
   CHECK(internal::touchable_above_table(pool, hand, nothing).size() == pool.size());
 }
@@ -112,10 +116,7 @@ TEST_CASE("What is long is carried near its center of mass", "[grasp][table_reac
   for (const double x : {0.4 + 0.1, 0.4 - 0.21, 0.4 + 0.23, 0.4 - 1.0}) {
     pool.push_back({Vector3d(x, 0.0, 2.0), -Vector3d::UnitZ(), 0});
   }
-  const std::vector<PoolPoint> left = internal::carrying_above_table(pool, center, above);
-  REQUIRE(left.size() == 2);
-  CHECK(left[0].point_O == pool[0].point_O);
-  CHECK(left[1].point_O == pool[1].point_O);
+  require_first_two(internal::carrying_above_table(pool, center, above), pool);
   const SurroundingsCollision nothing(hand, {});
   CHECK(internal::carrying_above_table(pool, center, nothing).size() == pool.size());
   CHECK(internal::carrying_above_table({}, center, above).empty());
