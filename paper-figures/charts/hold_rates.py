@@ -6,7 +6,7 @@ from figure_style import CYCLE, page
 from heat_table import heat_table
 from object_names import note_for, shown_name
 
-PROTOCOLS = {"normal": "dexgraspbench-100g", "hard": "dexonomy-hard", "multidex": "multidex-0.05g"}
+PROTOCOLS = {"normal": "dexgraspbench-100g", "hard": "dexonomy-hard", "multidex": "gendexgrasp"}
 COLUMNS = ("object", "grip", "status", "attempts", "valid", *(f"{name}_held" for name in PROTOCOLS))
 
 

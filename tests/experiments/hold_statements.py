@@ -15,7 +15,7 @@ OUTCOMES = {
     "initial_collision": "initial collision", "iteration_limit": "iteration limit", "poor_shape": "poor shape",
     "weak_features_only": "weak features only", "usable_but_not_valid": "usable but not valid",
 }  # fmt: skip
-PROTOCOLS = {"normal": "dexgraspbench-100g", "hard": "dexonomy-hard", "multidex": "multidex-0.05g"}
+PROTOCOLS = {"normal": "dexgraspbench-100g", "hard": "dexonomy-hard", "multidex": "gendexgrasp"}
 CHOICES = ("first", "balanced", "strongest_4", "strongest_24")
 
 
@@ -175,7 +175,7 @@ def hold_prediction(tables):
     grasps = len(details)
     easy = "all" if held["multidex"] == grasps else held["multidex"]
     yield (f"{grasps} valid grasps of {int(rows['attempts'].sum())} attempts, {held['normal']} of which hold under "
-           f"`dexgraspbench-100g`, {held['hard']} under `dexonomy-hard` and {easy} under `multidex-0.05g`")
+           f"`dexgraspbench-100g`, {held['hard']} under `dexonomy-hard` and {easy} under `gendexgrasp`")
     margins = details[details["margin_force_n"].notna()]
     force, torque = (margins[column].quantile([0.25, 0.5, 0.75]) for column in ("margin_force_n", "margin_torque_nm"))
     yield (f"Margins of the first grasp of each cell ({len(margins)}): quartiles {force.iloc[0]:.1f}, {force.iloc[1]:.1f} and "

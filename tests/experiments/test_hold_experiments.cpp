@@ -70,8 +70,8 @@ TEST_CASE("Both experiments test the same hands on all objects of the planner's 
 }
 
 TEST_CASE("Details and summary have columns of their own", "[experiments][hold]") {
-  for (const char* const slug :
-       {"hold_rates", "hold_prediction", "hold_choices", "hold_default", "from_table"}) {
+  for (const char* const slug : {"hold_rates", "hold_prediction", "hold_choices", "hold_default",
+                                 "from_table", "multidex_objects"}) {
     const Experiment& experiment = find_experiment(slug);
     const std::vector<Column> summary =
         experiment.summaries.empty() ? std::vector<Column>() : experiment.summaries[0].columns;

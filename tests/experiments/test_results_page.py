@@ -29,7 +29,7 @@ NAMES = (r"\bA\d+\b", r"\bM[123]?\b", r"[Ss]ection \d+(\.\d)?", r"Figs?\. \d+")
 # The values are, for each section of the page, what of the tables stands in it, and which other
 # numbers may.
 FIRST_OF_PAPER = "## Results: the tables and what made them"
-PROTOCOLS = (r"`dexgraspbench-100g`", r"`multidex-0\.05g`", r"64 per grip")
+PROTOCOLS = (r"`dexgraspbench-100g`", r"`gendexgrasp`", r"64 per grip")
 SECTIONS = {
     "# graspfit": (
         hold_statements.at_a_glance,

@@ -72,7 +72,7 @@ inline geometry::ConvexDecomposition one_piece(const geometry::TriangleMesh& con
 
 inline hold_test::HoldObject convex_object(const geometry::TriangleMesh& mesh) {
   const geometry::MassProperties mass = geometry::mass_properties(mesh);
-  return {one_piece(mesh), mass.center_of_mass, mass.inertia / mass.volume, {}};
+  return {one_piece(mesh), mass.center_of_mass, mass.inertia / mass.volume, mass.volume, {}};
 }
 
 /// Returns a hand whose links are convex.

@@ -36,7 +36,8 @@ std::string text_of(const ParameterValue& value, bool change) {
   }
   const std::string& choice = std::get<std::string>(value);
   if (!change) return choice;
-  if (choice == "lift" || choice == "six-forces") return choice == "lift" ? "six-forces" : "lift";
+  if (choice.starts_with("six-")) return "lift";
+  if (choice == "lift") return "six-forces";
   return choice == "none" ? "forces" : "none";
 }
 

@@ -11,7 +11,7 @@ using graspfit::base::InvalidInput;
 
 TEST_CASE("Every shipped protocol has its name, says where its numbers come from, and is valid",
           "[hold_test]") {
-  REQUIRE(hold_protocol_names().size() == 4);
+  REQUIRE(hold_protocol_names().size() == 5);
   CHECK(hold_protocol_names().front() == "dexgraspbench-100g");
   for (const std::string& name : hold_protocol_names()) {
     CAPTURE(name);
@@ -43,10 +43,26 @@ TEST_CASE("Published numbers stand in the protocols", "[hold_test]") {
   CHECK(hard.noslip_iterations == 0);
   CHECK(hard.impratio == 1.0);
   CHECK(hard.force == Approx(9.8 * hard.object_mass));
-  // MultiDex has 0.5 m/s2 and 2 cm.
-  const HoldProtocol weak = hold_protocol("multidex-0.05g");
+  // GenDexGrasp has 0.5 m/s2 and 2 cm.
+  const HoldProtocol weak = hold_protocol("gendexgrasp");
   CHECK(weak.force == Approx(0.5 * weak.object_mass));
   CHECK(weak.largest_shift == 0.02);
+  // D(R,O) has that of 500 kg/m3 at friction 3, for 1 s each way, and looks once, at the end.
+  const HoldProtocol dro = hold_protocol("dro");
+  CHECK(dro.force == Approx(0.5 * dro.object_mass));
+  CHECK(dro.object_density == 500.0);
+  CHECK(dro.sliding_friction == 3.0);
+  CHECK(dro.approach_time + dro.squeeze_time == 1.0);
+  CHECK(dro.hold_time == 6.0);
+  CHECK(dro.check_interval == dro.hold_time);
+  CHECK(dro.largest_shift == 0.02);
+  CHECK((dro.opening_share == 0.25 && dro.closing_share == 0.15));
+  CHECK_FALSE(dro.has_margins());
+  CHECK(bench.has_margins());
+}
+
+TEST_CASE("A protocol is found by its former name, too, and has today's", "[hold_test]") {
+  CHECK(hold_protocol("multidex-0.05g").name == "gendexgrasp");
 }
 
 TEST_CASE("A bad parameter is refused by name", "[hold_test]") {
@@ -61,6 +77,9 @@ TEST_CASE("A bad parameter is refused by name", "[hold_test]") {
       {"sliding_friction", [](HoldProtocol& p) { p.sliding_friction = -0.1; }},
       {"object_mass", [](HoldProtocol& p) { p.object_mass = 0.0; }},
       {"solimp", [](HoldProtocol& p) { p.hand_solimp[1] = 1.5; }},
+      {"object_density", [](HoldProtocol& p) { p.object_density = -1.0; }},
+      {"opening_share", [](HoldProtocol& p) { p.opening_share = 1.1; }},
+      {"closing_share", [](HoldProtocol& p) { p.closing_share = -0.1; }},
       {"stiffness", [](HoldProtocol& p) { p.stiffness = -5.0; }},
       {"check_interval", [](HoldProtocol& p) { p.check_interval = p.step / 2; }},
       {"largest_shift", [](HoldProtocol& p) { p.largest_shift = 0.0; }},

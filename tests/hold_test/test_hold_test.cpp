@@ -66,6 +66,84 @@ TEST_CASE("What no finger touches falls freely in every direction", "[hold_test]
   }
 }
 
+TEST_CASE("Loads in turn add up: what no finger touches is pushed away and stopped again",
+          "[hold_test]") {
+  grasp::Grasp open = pinch(0.0);
+  open.configuration = open.pre_grasp->configuration;
+  open.squeeze->configuration = open.configuration;
+  HoldProtocol protocol = bench();
+  protocol.load = HoldLoad::SixInTurn;
+  protocol.hold_time = protocol.check_interval = 0.6;
+  protocol.force = 0.01;
+  protocol.largest_shift = 1.0;
+  const HoldVerdict verdict = jaws_on_cube(protocol).test(open);
+  CHECK(verdict.held());
+  REQUIRE(verdict.directions.size() == 1);
+  CHECK(verdict.directions[0].direction_O == Eigen::Vector3d::Zero());
+  // Along each axis with a for T, then free for 2 T, then with -a for T: 3 a T^2 from where it was.
+  const double each = 3.0 * protocol.force / protocol.object_mass * 0.1 * 0.1;
+  CHECK(verdict.directions[0].largest_shift == Approx(std::sqrt(3.0) * each).epsilon(0.02));
+  // The jaws are 10 mm away.
+  CHECK(each < 0.0095);
+  CHECK_THROWS_WITH(jaws_on_cube(protocol).margin(open), testing::Contains("six directions"));
+}
+
+TEST_CASE("A density makes the mass, and the force grows with it", "[hold_test]") {
+  grasp::Grasp open = pinch(0.0);
+  open.configuration = open.pre_grasp->configuration;
+  open.squeeze->configuration = open.configuration;
+  HoldProtocol protocol = bench();
+  protocol.object_density = 500.0;
+  protocol.object_mass = 1.0;
+  protocol.force = 0.5;
+  protocol.largest_shift = 1.0;
+  protocol.hold_time = 0.2;
+  const HoldVerdict verdict = jaws_on_cube(protocol).test(open);
+  REQUIRE(verdict.directions.size() == 6);
+  CHECK(verdict.directions[2].largest_shift == Approx(0.5 * 0.5 * 0.2 * 0.2).epsilon(0.03));
+  // The cube of 40 mm weighs 32 g: held with that mass and its force alike.
+  HoldProtocol same = protocol;
+  same.object_density = 0.0;
+  same.object_mass = 0.032;
+  same.force = 0.016;
+  const grasp::Grasp weak = pinch(0.02);
+  const HoldVerdict by_density = jaws_on_cube(protocol).test(weak);
+  const HoldVerdict by_mass = jaws_on_cube(same).test(weak);
+  REQUIRE(by_density.directions.size() == by_mass.directions.size());
+  for (std::size_t i = 0; i < by_mass.directions.size(); ++i) {
+    CHECK(by_density.directions[i].largest_shift ==
+          Approx(by_mass.directions[i].largest_shift).margin(1e-6));
+  }
+}
+
+TEST_CASE("A squeeze toward the limits starts from the open side and needs no other",
+          "[hold_test]") {
+  HoldProtocol protocol = bench();
+  protocol.squeeze = SqueezeRule::Limits;
+  protocol.opening_share = 0.25;
+  protocol.closing_share = 0.15;
+  grasp::Grasp grasp = pinch(0.0);
+  grasp.pre_grasp.reset();
+  grasp.squeeze.reset();
+  HoldTest test = jaws_on_cube(protocol);
+  // Slides from 0 to 0.06, at 0.04: from 0.03 on, to 0.043, 3 mm in the cube.
+  const std::vector<HoldFrame> frames = test.replay(grasp, 0, 0.1);
+  REQUIRE_FALSE(frames.empty());
+  CHECK(frames.front().hand.q.isApprox(Eigen::Vector2d(0.03, 0.03), 1e-12));
+  const HoldVerdict verdict = test.test(grasp);
+  CHECK(verdict.held());
+  const HoldVerdict pinched = jaws_on_cube(bench()).test(pinch(0.003 * protocol.slide_stiffness));
+  CHECK(verdict.squeeze_force == Approx(pinched.squeeze_force).epsilon(0.01));
+}
+
+TEST_CASE("D(R,O)'s test tells a grasp from none", "[hold_test]") {
+  HoldTest test = jaws_on_cube(hold_protocol("dro"));
+  CHECK(test.test(pinch(0.0)).held());
+  grasp::Grasp none = pinch(0.0);
+  none.configuration = jaws_at(0.0, 0.0);
+  CHECK(test.test(none).stage == HoldStage::Load);
+}
+
 TEST_CASE("A ball in a closed room is held without friction", "[hold_test]") {
   HoldProtocol protocol = bench();
   protocol.sliding_friction = 0.0;

@@ -109,9 +109,9 @@ Request read_request(const Flags& flags) {
   request.run.indices = flags.indices("grasp");
   request.run.margin = flags.has("margin");
   request.run.near_limit = !flags.has("quick");
-  if (request.run.margin && request.protocol.load == hold_test::HoldLoad::Lift) {
+  if (request.run.margin && !request.protocol.has_margins()) {
     throw UsageError("--margin: protocol " + request.protocol.name +
-                     " lifts, and pulls at nothing");
+                     " does not pull six ways from the same state");
   }
   request.run.num_threads = flags.integer("jobs");
   if (request.run.num_threads < 0) {

@@ -417,9 +417,8 @@ ExitCode run_plan(const std::vector<std::string>& arguments) {
   if (flags.has("hold")) {
     protocol = hold_protocol_named("hold", flags.text("hold"));
     require_physics("--hold");
-    if (options.rank == grasp::RankRule::Margin && protocol->load == hold_test::HoldLoad::Lift) {
-      throw UsageError("--rank margin: protocol " + protocol->name +
-                       " lifts, and finds no margins");
+    if (options.rank == grasp::RankRule::Margin && !protocol->has_margins()) {
+      throw UsageError("--rank margin: protocol " + protocol->name + " finds no margins");
     }
   }
   warn_of_findings("plan", reading);

@@ -14,7 +14,7 @@ HeldGrasps held_grasps(const geometry::TriangleMesh& object_O, const hands::Hand
   const hold_test::HoldHand hold_hand = hold_test::prepare_hold_hand(hand);
   const hold_test::HoldObject hold_object = hold_test::prepare_hold_object(object_O);
   hold_test::HoldBatchOptions options;
-  options.margin = protocol.load != hold_test::HoldLoad::Lift;
+  options.margin = protocol.has_margins();
   options.num_threads = num_threads;
   const std::vector<hold_test::TestedGrasp> tested = hold_test::test_grasps(
       hold_hand, hold_object, protocol, planned, options, [&](std::size_t done, std::size_t total) {

@@ -78,9 +78,10 @@ po::options_description hold_protocol_options() {
   add_option(options, "protocol", "NAME", hold_test::hold_protocol_names().front(),
              joined(hold_test::hold_protocol_names(), "|"));
   add_option(
-      options, "squeeze", "forces|extrapolation|none", std::nullopt,
+      options, "squeeze", "forces|extrapolation|limits|none", std::nullopt,
       "where the squeeze comes from: the grasp file (forces that balance), as far beyond the "
-      "grasp as the pre-grasp is before it, or none; without it the protocol's");
+      "grasp as the pre-grasp is before it, shares of the joints' way to their limits, or none; "
+      "without it the protocol's");
   add_option(
       options, "step", "SECONDS", std::nullopt,
       "of the simulation, from 0.00001; without it the protocol's, for a single grasp at most "
@@ -94,11 +95,11 @@ po::options_description hold_protocol_options() {
 }
 
 hold_test::HoldProtocol hold_protocol_named(const std::string& flag, const std::string& name) {
-  const std::vector<std::string> names = hold_test::hold_protocol_names();
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    fail_choice(flag, name, joined(names, "|"));
+  try {
+    return hold_test::hold_protocol(name);
+  } catch (const base::InvalidInput&) {
+    fail_choice(flag, name, joined(hold_test::hold_protocol_names(), "|"));
   }
-  return hold_test::hold_protocol(name);
 }
 
 bool sets_step(const Flags& flags) {

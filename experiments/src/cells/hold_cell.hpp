@@ -18,13 +18,15 @@ struct TestedProtocol {
   const char* prefix;
 };
 inline constexpr std::array<TestedProtocol, 3> kTestedProtocols = {
-    {{"dexgraspbench-100g", "normal_"},
-     {"dexonomy-hard", "hard_"},
-     {"multidex-0.05g", "multidex_"}}};
+    {{"dexgraspbench-100g", "normal_"}, {"dexonomy-hard", "hard_"}, {"gendexgrasp", "multidex_"}}};
 
 /// Those of objects that lie on a table.
 inline constexpr std::array<TestedProtocol, 2> kTableProtocols = {
     {{"dexgraspbench-100g", "normal_"}, {"tabletop-lift", "lift_"}}};
+
+/// Those of objects on which others report success, their own test the last.
+inline constexpr std::array<TestedProtocol, 3> kMultidexProtocols = {
+    {{"dexgraspbench-100g", "normal_"}, {"dexonomy-hard", "hard_"}, {"dro", "dro_"}}};
 
 /// What a table of this kind has beside what all have.
 struct HoldColumns {

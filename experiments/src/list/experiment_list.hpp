@@ -18,6 +18,7 @@ sweep::Experiment hold_rates();
 sweep::Experiment parameter_sweeps();
 sweep::Experiment reach_grasps();
 sweep::Experiment measured_contacts();
+sweep::Experiment multidex_objects();
 sweep::Experiment object_voxels();
 sweep::Experiment special_cases();
 sweep::Experiment table_tidying();

@@ -30,6 +30,7 @@ std::vector<Experiment> listed_experiments() {
       hold_prediction(),
       hold_rates(),
       measured_contacts(),
+      multidex_objects(),
       object_voxels(),
       planner_table_experiment("paper_grasps"),
       parameter_sweeps(),

@@ -33,7 +33,7 @@ HoldObject prepare_hold_object(const geometry::TriangleMesh& mesh,
                                const geometry::ConvexDecompositionOptions& options) {
   const geometry::MassProperties mass = geometry::mass_properties(mesh);
   return {geometry::cached_convex_decomposition(mesh, options), mass.center_of_mass,
-          mass.inertia / mass.volume, foot(mesh, mass.center_of_mass)};
+          mass.inertia / mass.volume, mass.volume, foot(mesh, mass.center_of_mass)};
 }
 
 double table_z_O(const HoldObject& object) {

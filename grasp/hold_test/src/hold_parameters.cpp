@@ -17,8 +17,8 @@ namespace {
 using base::InvalidInput;
 
 constexpr std::array kSqueezeRules = {SqueezeRule::Forces, SqueezeRule::Extrapolation,
-                                      SqueezeRule::None};
-constexpr std::array kLoads = {HoldLoad::SixForces, HoldLoad::Lift};
+                                      SqueezeRule::Limits, SqueezeRule::None};
+constexpr std::array kLoads = {HoldLoad::SixForces, HoldLoad::SixInTurn, HoldLoad::Lift};
 
 using Member =
     std::variant<double HoldProtocol::*, int HoldProtocol::*, bool HoldProtocol::*,
@@ -47,6 +47,7 @@ const std::vector<Parameter>& parameters() {
       {"object_solref", &P::object_solref},
       {"multi_point_contacts", &P::multi_point_contacts},
       {"object_mass_kg", &P::object_mass},
+      {"object_density_kg_per_m3", &P::object_density},
       {"object_linear_damping_per_s", &P::object_linear_damping},
       {"object_angular_damping_per_s", &P::object_angular_damping},
       {"stiffness_Nm_per_rad", &P::stiffness},
@@ -56,6 +57,8 @@ const std::vector<Parameter>& parameters() {
       {"slide_armature_kg", &P::slide_armature},
       {"link_density_kg_per_m3", &P::link_density},
       {"extrapolation", &P::extrapolation},
+      {"opening_share", &P::opening_share},
+      {"closing_share", &P::closing_share},
       {"approach_time_s", &P::approach_time},
       {"squeeze_time_s", &P::squeeze_time},
       {"force_N", &P::force},
@@ -75,7 +78,7 @@ const std::vector<Parameter>& parameters() {
 [[maybe_unused]] void require_all_fields(const HoldProtocol& protocol) {
   [[maybe_unused]] const auto& [name, source, k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11, k12,
                                 k13, k14, k15, k16, k17, k18, k19, k20, k21, k22, k23, k24, k25,
-                                k26, k27, k28, k29, k30, k31, k32, k33] = protocol;
+                                k26, k27, k28, k29, k30, k31, k32, k33, k34, k35, k36] = protocol;
 }
 
 const Parameter& parameter_named(const std::string& name) {
@@ -174,13 +177,25 @@ const char* name_of(SqueezeRule rule) {
       return "forces";
     case SqueezeRule::Extrapolation:
       return "extrapolation";
+    case SqueezeRule::Limits:
+      return "limits";
     case SqueezeRule::None:
       break;
   }
   return "none";
 }
 
-const char* name_of(HoldLoad load) { return load == HoldLoad::SixForces ? "six-forces" : "lift"; }
+const char* name_of(HoldLoad load) {
+  switch (load) {
+    case HoldLoad::SixForces:
+      return "six-forces";
+    case HoldLoad::SixInTurn:
+      return "six-in-turn";
+    case HoldLoad::Lift:
+      break;
+  }
+  return "lift";
+}
 
 const std::vector<std::string>& parameter_names() {
   static const std::vector<std::string> names = [] {

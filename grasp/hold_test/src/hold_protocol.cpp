@@ -4,6 +4,7 @@
 #include <numbers>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/list_text.hpp"
@@ -40,11 +41,11 @@ HoldProtocol dexonomy_hard() {
   return protocol;
 }
 
-HoldProtocol multidex() {
+HoldProtocol gendexgrasp() {
   HoldProtocol protocol = dexgraspbench();
-  protocol.name = "multidex-0.05g";
+  protocol.name = "gendexgrasp";
   protocol.source =
-      "MultiDex (tengyu-liu/GenDexGrasp, envs/tasks/grasp_test_force.yaml): 0.5 m/s2 along six "
+      "GenDexGrasp (tengyu-liu/GenDexGrasp, envs/tasks/grasp_test_force.yaml): 0.5 m/s2 along six "
       "axes (5000 N/m3 at 10000 kg/m3) for 50 steps of 1/60 s, 2 cm and any rotation, checked at "
       "the end, friction 10, object damping 10 and 100 1/s. Ours: MuJoCo instead of PhysX and its "
       "contact parameters, 0.1 kg instead of the density, pre-grasp and squeeze, a reset before "
@@ -55,6 +56,33 @@ HoldProtocol multidex() {
   protocol.force = 0.05;
   protocol.hold_time = 50.0 / 60.0;
   protocol.check_interval = 50.0 / 60.0;
+  protocol.largest_shift = 0.02;
+  protocol.largest_turn = kTwoPi;
+  return protocol;
+}
+
+HoldProtocol dro() {
+  HoldProtocol protocol = dexgraspbench();
+  protocol.name = "dro";
+  protocol.source =
+      "D(R,O) (zhenyuwei2003/DRO-Grasp, validation/isaac_validator.py, utils/controller.py): "
+      "friction 3, density 500 kg/m3, no gravity, joints from a quarter of the way to the limit on "
+      "the opening side to 0.15 of it on the closing side in 1 s, then 0.5 N/kg along +x +y +z -x "
+      "-y -z for 1 s each without a reset, 2 cm and any rotation, checked at the end. Ours: MuJoCo "
+      "instead of PhysX and its contact parameters, base fixed instead of on drives, kp 5 N m/rad "
+      "instead of 1000 up to the limits of the hand files used there, commands that move instead "
+      "of jump, joints close to the side that the hand's description says (there: toward the "
+      "object's origin), lost, too, what is moved by 2 cm before the load";
+  protocol.load = HoldLoad::SixInTurn;
+  protocol.squeeze = SqueezeRule::Limits;
+  protocol.sliding_friction = 3.0;
+  protocol.object_density = 500.0;
+  protocol.object_mass = 1.0;
+  protocol.force = 0.5;
+  protocol.approach_time = 0.5;
+  protocol.squeeze_time = 0.5;
+  protocol.hold_time = 6.0;
+  protocol.check_interval = 6.0;
   protocol.largest_shift = 0.02;
   protocol.largest_turn = kTwoPi;
   return protocol;
@@ -75,8 +103,8 @@ HoldProtocol tabletop_lift() {
 }
 
 const std::vector<HoldProtocol>& protocols() {
-  static const std::vector<HoldProtocol> all = {dexgraspbench(), dexonomy_hard(), multidex(),
-                                                tabletop_lift()};
+  static const std::vector<HoldProtocol> all = {dexgraspbench(), dexonomy_hard(), gendexgrasp(),
+                                                dro(), tabletop_lift()};
   return all;
 }
 
@@ -111,6 +139,7 @@ void HoldProtocol::validate() const {
     for (const double value : *solref) positive(value, "solref");
   }
   positive(object_mass, "object_mass");
+  not_negative(object_density, "object_density");
   not_negative(object_linear_damping, "object_linear_damping");
   not_negative(object_angular_damping, "object_angular_damping");
   positive(stiffness, "stiffness");
@@ -120,6 +149,10 @@ void HoldProtocol::validate() const {
   not_negative(slide_armature, "slide_armature");
   positive(link_density, "link_density");
   not_negative(extrapolation, "extrapolation");
+  for (const auto& [share, field] :
+       {std::pair(opening_share, "opening_share"), {closing_share, "closing_share"}}) {
+    require(share >= 0.0 && share <= 1.0, field, share, "in [0, 1]");
+  }
   const auto require_time = [](double time, double least, std::string_view field,
                                std::string_view rule) {
     require(time >= least && time <= kLongestTime, field, time, rule);
@@ -148,8 +181,9 @@ const std::vector<std::string>& hold_protocol_names() {
 }
 
 HoldProtocol hold_protocol(const std::string& name) {
+  const std::string today = name == "multidex-0.05g" ? "gendexgrasp" : name;
   for (const HoldProtocol& protocol : protocols()) {
-    if (protocol.name == name) return protocol;
+    if (protocol.name == today) return protocol;
   }
   throw base::InvalidInput("hold_protocol: no protocol \"" + name + "\"; there are " +
                            base::list_text(protocols(), &HoldProtocol::name));

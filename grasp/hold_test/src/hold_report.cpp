@@ -173,6 +173,7 @@ std::vector<std::string> changed_parameters(const HoldProtocol& protocol) {
 
 std::vector<std::string> load_names(const HoldProtocol& protocol) {
   if (protocol.load == HoldLoad::Lift) return {"lift"};
+  if (protocol.load == HoldLoad::SixInTurn) return {"in_turn"};
   return {"+x", "-x", "+y", "-y", "+z", "-z"};
 }
 

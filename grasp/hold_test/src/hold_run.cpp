@@ -53,6 +53,18 @@ void require_size(const hands::HandModel& hand, const HandConfiguration& configu
                            " has " + std::to_string(hand.joints.size()) + " joints");
 }
 
+/// The hand with each joint that opens and closes it moved by `share` of its way to that limit, the
+/// others as they are and followers with their leaders.
+HandConfiguration toward_limits(const hands::HandModel& hand, HandConfiguration at,
+                                double (hands::Joint::*limit)() const, double share) {
+  for (const int j : hands::independent_joints(hand)) {
+    const hands::Joint& joint = hand.joints[j];
+    if (joint.closing_sign != 0) at.q[j] += share * ((joint.*limit)() - at.q[j]);
+  }
+  hands::apply_couplings(hand, at.q);
+  return at;
+}
+
 }  // namespace
 
 int HoldRun::num_steps(double duration) const {
@@ -82,26 +94,37 @@ bool HoldRun::step(const Watch& watch) {
   return true;
 }
 
-HandConfiguration HoldRun::squeezed(const grasp::Grasp& grasp) const {
-  HandConfiguration result = grasp.configuration;
-  if (protocol_.squeeze == SqueezeRule::Forces) result.q = grasp.squeeze->configuration.q;
-  if (protocol_.squeeze == SqueezeRule::Extrapolation) {
-    result.q +=
-        protocol_.extrapolation * (grasp.configuration.q - grasp.pre_grasp->configuration.q);
-    hands::clamp_to_limits(hand_, result.q);
+HoldRun::Ends HoldRun::ends_of(const grasp::Grasp& grasp) const {
+  const HandConfiguration& at_grasp = grasp.configuration;
+  if (protocol_.squeeze == SqueezeRule::Limits) {
+    return {toward_limits(hand_, at_grasp, &hands::Joint::open_limit, protocol_.opening_share),
+            toward_limits(hand_, at_grasp, &hands::Joint::closed_limit, protocol_.closing_share)};
   }
-  return result;
+  Ends ends{grasp.pre_grasp->configuration, at_grasp};
+  if (protocol_.squeeze == SqueezeRule::Forces) ends.squeeze.q = grasp.squeeze->configuration.q;
+  if (protocol_.squeeze == SqueezeRule::Extrapolation) {
+    ends.squeeze.q += protocol_.extrapolation * (at_grasp.q - ends.start.q);
+    hands::clamp_to_limits(hand_, ends.squeeze.q);
+  }
+  return ends;
 }
 
-std::string HoldRun::rejection(const grasp::Grasp& grasp) {
+std::string HoldRun::rejection(const grasp::Grasp& grasp) const {
   require_size(hand_, grasp.configuration, "grasp");
+  if (protocol_.squeeze == SqueezeRule::Limits) return {};
   if (!grasp.pre_grasp) return "no pre-grasp";
   require_size(hand_, grasp.pre_grasp->configuration, "pre-grasp");
   if (protocol_.squeeze == SqueezeRule::Forces) {
     if (!grasp.squeeze) return "no squeeze";
     require_size(hand_, grasp.squeeze->configuration, "squeeze");
   }
-  physics_.reset(grasp.pre_grasp->configuration, following_joints(hand_, grasp.configuration.q));
+  return {};
+}
+
+/// Puts the hand at its start and says what is too deep in what; empty if nothing is. `q` are the
+/// joints of the grasp.
+std::string HoldRun::overlap_at(const HandConfiguration& start, const Eigen::VectorXd& q) {
+  physics_.reset(start, following_joints(hand_, q));
   const Physics::Overlap overlap = physics_.deepest_overlap();
   if (overlap.depth <= protocol_.largest_penetration) return {};
   const auto name = [&](int link) { return hand_.links[link].name; };
@@ -131,14 +154,15 @@ HoldVerdict HoldRun::approach(const grasp::Grasp& grasp, const Watch& watch, dou
   verdict.stage = HoldStage::Rejected;
   verdict.reason = rejection(grasp);
   if (!verdict.reason.empty()) return verdict;
+  const auto [start, end] = ends_of(grasp);
+  verdict.reason = overlap_at(start, grasp.configuration.q);
+  if (!verdict.reason.empty()) return verdict;
   if (watch) watch();
   verdict.stage = HoldStage::Approach;
   if (protocol_.load == HoldLoad::Lift) {
     physics_.set_load({0.0, 0.0, -load_share * protocol_.gravity * protocol_.object_mass},
                       Eigen::Vector3d::Zero());
   }
-  const HandConfiguration& start = grasp.pre_grasp->configuration;
-  const HandConfiguration end = squeezed(grasp);
   const bool is_there = move(start, grasp.configuration, protocol_.approach_time, verdict, watch) &&
                         move(grasp.configuration, end, protocol_.squeeze_time, verdict, watch);
   verdict.reason = failure_;
@@ -152,16 +176,34 @@ HoldVerdict HoldRun::approach(const grasp::Grasp& grasp, const Watch& watch, dou
 
 DirectionVerdict HoldRun::load(const Eigen::Vector3d& direction_O, const Eigen::Vector3d& force_O,
                                const Eigen::Vector3d& torque_O, const Watch& watch) {
+  const int lifted = protocol_.load == HoldLoad::Lift ? num_steps(protocol_.lift_time) : 0;
+  const auto act = [&](int i, int) {
+    if (i == 1) physics_.set_load(force_O, torque_O);
+    if (i <= lifted) physics_.command_lift(protocol_.lift_height * i / lifted);
+  };
+  return hold(direction_O, act, watch);
+}
+
+DirectionVerdict HoldRun::load_in_turn(double force, const Watch& watch) {
+  const auto act = [&](int i, int last) {
+    constexpr int kNumTurns = 6;
+    const int turn = static_cast<int>(std::int64_t{kNumTurns} * (i - 1) / last);
+    const double sign = turn < 3 ? 1.0 : -1.0;
+    physics_.set_load(sign * force * Eigen::Vector3d::Unit(turn % 3), Eigen::Vector3d::Zero());
+  };
+  return hold(Eigen::Vector3d::Zero(), act, watch);
+}
+
+DirectionVerdict HoldRun::hold(const Eigen::Vector3d& direction_O,
+                               const std::function<void(int, int)>& act, const Watch& watch) {
   failure_.clear();
   physics_.restore(squeezed_state_);
-  physics_.set_load(force_O, torque_O);
   DirectionVerdict verdict;
   verdict.direction_O = direction_O;
   const int last = num_steps(protocol_.hold_time);
   const int between_checks = num_steps(protocol_.check_interval);
-  const int lifted = protocol_.load == HoldLoad::Lift ? num_steps(protocol_.lift_time) : 0;
   for (int i = 1; i <= last; ++i) {
-    if (i <= lifted) physics_.command_lift(protocol_.lift_height * i / lifted);
+    act(i, last);
     const bool is_sound = step(watch);
     if (is_sound && i % between_checks != 0 && i != last) continue;
     const Motion moved = is_sound ? motion(X_HB_squeezed_, X_HB()) : Motion{};

@@ -30,6 +30,9 @@ class HoldRun {
   DirectionVerdict load(const Eigen::Vector3d& direction_O, const Eigen::Vector3d& force_O,
                         const Eigen::Vector3d& torque_O, const Watch& watch = {});
 
+  /// As `load`, with a force of that size along +x +y +z −x −y −z of O, one after another.
+  DirectionVerdict load_in_turn(double force, const Watch& watch = {});
+
   /// Why the last call's simulation went wrong; empty else.
   const std::string& failure() const { return failure_; }
 
@@ -39,8 +42,19 @@ class HoldRun {
     double turn = 0.0;   ///< [rad]
   };
 
-  std::string rejection(const grasp::Grasp& grasp);
-  hands::HandConfiguration squeezed(const grasp::Grasp& grasp) const;
+  /// Where the test of a grasp starts, and where it squeezes.
+  struct Ends {
+    hands::HandConfiguration start;
+    hands::HandConfiguration squeeze;
+  };
+
+  std::string rejection(const grasp::Grasp& grasp) const;
+  std::string overlap_at(const hands::HandConfiguration& start, const Eigen::VectorXd& q);
+  Ends ends_of(const grasp::Grasp& grasp) const;
+  /// Simulates `hold_time` from the squeezed state; `act` is called before every step with its
+  /// number, from 1, and the number of all.
+  DirectionVerdict hold(const Eigen::Vector3d& direction_O,
+                        const std::function<void(int, int)>& act, const Watch& watch);
   /// Moves linearly from one command to another, with checks on the way, each of which goes into
   /// the largest motion of `verdict`. Returns false if the object was lost or the simulation went
   /// wrong.

@@ -87,21 +87,40 @@ std::pair<double, Vector3d> weakest(double most, const Holds& holds) {
 
 }  // namespace
 
+/// The protocol with mass and force for this object instead of a density.
+HoldProtocol with_mass(HoldProtocol protocol, const HoldObject& object) {
+  if (protocol.object_density == 0.0) return protocol;
+  const double mass = protocol.object_density * object.volume;
+  protocol.force *= mass / protocol.object_mass;
+  protocol.object_mass = mass;
+  return protocol;
+}
+
 struct HoldTest::Impl {
   Impl(HoldHand hand_, HoldObject object_, HoldProtocol protocol_)
       : hand(std::move(hand_)),
         object(std::move(object_)),
-        protocol(std::move(protocol_)),
+        protocol(with_mass(std::move(protocol_), object)),
         physics(hand, object, protocol),
         run(physics, hand, object, protocol) {}
 
   int num_directions() const {
-    return protocol.load == HoldLoad::Lift ? 1 : base::as_index<int>(six_directions().size());
+    return protocol.load == HoldLoad::SixForces ? base::as_index<int>(six_directions().size()) : 1;
   }
   Vector3d direction(int index) const {
-    return protocol.load == HoldLoad::Lift ? Vector3d::UnitZ() : six_directions()[index];
+    switch (protocol.load) {
+      case HoldLoad::SixForces:
+        return six_directions()[index];
+      case HoldLoad::SixInTurn:
+        return Vector3d::Zero();
+      case HoldLoad::Lift:
+        break;
+    }
+    return Vector3d::UnitZ();
   }
   DirectionVerdict load(int index, const HoldRun::Watch& watch = {}, double share = 1.0) {
+    if (protocol.load == HoldLoad::SixInTurn)
+      return run.load_in_turn(share * protocol.force, watch);
     const Vector3d force = protocol.load == HoldLoad::Lift
                                ? Vector3d(0.0, 0.0, -protocol.gravity * protocol.object_mass)
                                : Vector3d(protocol.force * direction(index));
@@ -169,9 +188,9 @@ bool HoldTest::is_near_limit(const grasp::Grasp& grasp, const HoldVerdict& verdi
 }
 
 HoldMargin HoldTest::margin(const grasp::Grasp& grasp, double largest) {
-  if (impl_->protocol.load != HoldLoad::SixForces) {
+  if (!impl_->protocol.has_margins()) {
     throw base::InvalidInput("HoldTest::margin: protocol " + impl_->protocol.name +
-                             " lifts; a margin needs one that loads along six directions");
+                             " does not load along six directions, each from the same state");
   }
   if (!(largest > 0.0) || !std::isfinite(largest)) {
     throw base::InvalidInput("HoldTest::margin: largest must be finite and > 0 N");

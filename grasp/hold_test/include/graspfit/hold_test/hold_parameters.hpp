@@ -20,15 +20,15 @@ const std::vector<std::string>& parameter_names();
 ParameterValue parameter_value(const HoldProtocol& protocol, const std::string& name);
 
 /// Sets a parameter from text: a number in the C locale, numbers separated by commas, yes or no, or
-/// the name of a choice (six-forces|lift, forces|extrapolation|none). The protocol is not
-/// validated.
+/// the name of a choice (six-forces|six-in-turn|lift, forces|extrapolation|limits|none). The
+/// protocol is not validated.
 /// @throws InvalidInput naming the parameter and the text.
 void set_parameter(HoldProtocol& protocol, const std::string& name, const std::string& text);
 
-/// "forces", "extrapolation" or "none".
+/// "forces", "extrapolation", "limits" or "none".
 const char* name_of(SqueezeRule rule);
 
-/// "six-forces" or "lift".
+/// "six-forces", "six-in-turn" or "lift".
 const char* name_of(HoldLoad load);
 
 }  // namespace graspfit::hold_test

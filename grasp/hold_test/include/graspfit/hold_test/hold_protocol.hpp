@@ -11,14 +11,19 @@ namespace graspfit::hold_test {
 enum class SqueezeRule {
   Forces,         ///< The grasp's own squeeze: Δq = Jᵀ f / kp from balanced forces.
   Extrapolation,  ///< Grasp + (grasp − pre-grasp) · `extrapolation`, clamped to the limits.
+  Limits,         ///< Of each joint that closes the hand `closing_share` of the way from the grasp
+                  ///< to its closed limit; the test starts `opening_share` of the way to its open
+                  ///< one, with the palm at the grasp, instead of at the pre-grasp.
   None,           ///< The grasp's joints themselves.
 };
 
 /// What loads the object once it is squeezed.
 enum class HoldLoad {
   SixForces,  ///< `force` at the center of mass along ±x ±y ±z of O in turn, a reset before each.
-  Lift,       ///< Gravity acts from the start, with the object on a table; the hand moves up by
-              ///< `lift_height`.
+  SixInTurn,  ///< `force` at the center of mass along +x +y +z −x −y −z of O, one after another
+              ///< without a reset, each for a sixth of `hold_time`: one load.
+  Lift,  ///< Gravity acts from the start, with the object on a table; the hand moves up by
+         ///< `lift_height`.
 };
 
 /// A named way to decide whether a grasp holds: every number that the verdict depends on
@@ -48,7 +53,10 @@ struct HoldProtocol {
   bool multi_point_contacts = true;  ///< Several contact points where flat pieces meet (MuJoCo's
                                      ///< multiccd): with a single one, light flat pads shake loose.
 
-  double object_mass = 0.1;             ///< [kg]
+  double object_mass = 0.1;  ///< [kg]
+  /// Density of the object [kg/m³]. Above 0 its mass is this times its volume, and `force` is what
+  /// would act on `object_mass`: it grows with the mass.
+  double object_density = 0.0;
   double object_linear_damping = 0.0;   ///< Damping of the object's velocity [1/s].
   double object_angular_damping = 0.0;  ///< Damping of its angular velocity [1/s].
 
@@ -61,11 +69,13 @@ struct HoldProtocol {
                                 ///< shake flat objects loose.
   double link_density = 800.0;  ///< Density of links whose description states no mass [kg/m³].
 
-  double extrapolation = 1.0;  ///< See SqueezeRule.
+  double extrapolation = 1.0;   ///< See SqueezeRule.
+  double opening_share = 0.25;  ///< In [0, 1]; see SqueezeRule::Limits.
+  double closing_share = 0.15;  ///< In [0, 1].
   // Times are >= step and <= kLongestTime.
   double approach_time = 0.4;  ///< Duration of the linear motion from pre-grasp to grasp [s].
   double squeeze_time = 0.4;   ///< Duration of the linear motion from grasp to squeeze [s].
-  double force = 1.0;          ///< Force of HoldLoad::SixForces [N].
+  double force = 1.0;          ///< Force of HoldLoad::SixForces and SixInTurn [N].
   double gravity = 9.81;  ///< Gravity of HoldLoad::Lift, on the object alone, along −z of O [m/s²].
   double lift_height = 0.1;     ///< Height by which HoldLoad::Lift lifts [m].
   double lift_time = 0.4;       ///< Duration of the lift [s].
@@ -81,13 +91,17 @@ struct HoldProtocol {
                                       ///< at the pre-grasp [m]: a deeper one is rejected untested.
 
   void validate() const;  ///< Throws InvalidInput naming the field and its value.
+
+  /// Whether `HoldTest::margin` finds margins: six loads, each from the same state.
+  bool has_margins() const { return load == HoldLoad::SixForces; }
 };
 
-/// Names of the shipped protocols: dexgraspbench-100g (the default), dexonomy-hard,
-/// multidex-0.05g, tabletop-lift.
+/// Names of the shipped protocols: dexgraspbench-100g (the default), dexonomy-hard, gendexgrasp,
+/// dro, tabletop-lift.
 const std::vector<std::string>& hold_protocol_names();
 
-/// Returns the shipped protocol of that name. @throws InvalidInput that lists the names there are,
+/// Returns the shipped protocol of that name, or of a former one (multidex-0.05g is gendexgrasp).
+/// @throws InvalidInput that lists the names there are,
 /// if there is none of that name.
 HoldProtocol hold_protocol(const std::string& name);
 

@@ -25,6 +25,7 @@ struct HoldObject {
   Eigen::Matrix3d inertia_per_mass_O = Eigen::Matrix3d::Zero();  ///< Inertia over mass, about the
                                                                  ///< center of mass along O's axes
                                                                  ///< [m²].
+  double volume = 0.0;                                           ///< Of the true solid [m³].
   /// Points in O whose convex hull stands on the table, beside the pieces: the corners of the
   /// mesh's hull at most 1 mm above its lowest one, and a point of the object over each. Round
   /// objects roll off pieces, which have fewer corners than they rest on.
@@ -59,7 +60,8 @@ enum class HoldStage {
 
 /// What the test found of one load.
 struct DirectionVerdict {
-  Eigen::Vector3d direction_O = Eigen::Vector3d::Zero();  ///< Unit direction of the load.
+  /// Unit direction of the load; zero of HoldLoad::SixInTurn.
+  Eigen::Vector3d direction_O = Eigen::Vector3d::Zero();
   HoldStage stage = HoldStage::Held;
   std::optional<double> failed_at;  ///< Time of the first failing check, since the load began [s].
   double largest_shift = 0.0;  ///< Largest displacement from the squeezed pose at any check up to
@@ -75,7 +77,8 @@ struct HoldVerdict {
   double approach_shift = 0.0;
   double approach_turn = 0.0;  ///< Largest rotation from the planned pose [rad].
   double squeeze_force = 0.0;  ///< Sum of the normal forces on the object once squeezed [N].
-  /// Verdicts of the six loads, or of the single one of HoldLoad::Lift; none for a rejected grasp.
+  /// Verdicts of the six loads, or of the single one of SixInTurn and Lift; none for a rejected
+  /// grasp.
   std::vector<DirectionVerdict> directions;
   bool held() const { return stage == HoldStage::Held; }
 };
@@ -124,7 +127,7 @@ class HoldTest {
   /// Finds the smallest failing loads by bisection: a returned load fails, a load that is 2 %
   /// smaller holds. Loads are tried up to `largest` [N] (torques: `largest` · 0.1 m); where even
   /// this load holds, it is returned. The loads are zero where the grasp is rejected or lost
-  /// without load. @throws InvalidInput for protocols that lift.
+  /// without load. @throws InvalidInput unless the protocol has margins.
   HoldMargin margin(const grasp::Grasp& grasp, double largest = 100.0);
 
   /// Repeats the simulation of one direction of `test` and returns a frame every `interval` seconds
