@@ -28,7 +28,8 @@ const char* const kUsage =
     "  graspfit inspect OBJECT       what a mesh is like: repairs, voxels, contact scores\n"
     "  graspfit evaluate GRASPS.json computes contacts and measures of a grasp file again\n"
     "  graspfit hold GRASPS.json     tests in physics whether the grasps of a file hold\n"
-    "  graspfit convert IN OUT       grasp files of other tools: writes five formats, reads one\n"
+    "  graspfit compare A B          two sets of grasps on the same objects, side by side\n"
+    "  graspfit convert IN OUT       grasp files of other tools: writes five formats, reads two\n"
     "  graspfit motion MOTION.json   checks and shows how a hand moves objects on a table\n"
     "  graspfit shape NAME           writes a mesh of a mug, a bottle, ...: see shape --list\n"
     "  graspfit hand ...             lists, shows, checks, exports and derives hands\n"
@@ -42,11 +43,12 @@ void print_error(const std::string& command, const std::string& what) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 
-constexpr std::array<NamedCommand, 10> kCommands = {{{"plan", run_plan},
+constexpr std::array<NamedCommand, 11> kCommands = {{{"plan", run_plan},
                                                      {"options", run_options},
                                                      {"inspect", run_inspect},
                                                      {"evaluate", run_evaluate},
                                                      {"hold", run_hold},
+                                                     {"compare", run_compare},
                                                      {"convert", run_convert},
                                                      {"motion", run_motion},
                                                      {"shape", run_shape},

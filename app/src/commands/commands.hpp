@@ -15,6 +15,7 @@ ExitCode run_options(const std::vector<std::string>& arguments);
 ExitCode run_inspect(const std::vector<std::string>& arguments);
 ExitCode run_evaluate(const std::vector<std::string>& arguments);
 ExitCode run_hold(const std::vector<std::string>& arguments);
+ExitCode run_compare(const std::vector<std::string>& arguments);
 ExitCode run_convert(const std::vector<std::string>& arguments);
 ExitCode run_shape(const std::vector<std::string>& arguments);
 ExitCode run_motion(const std::vector<std::string>& arguments);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -10,19 +9,16 @@
 
 #include "cli/command_line.hpp"
 #include "commands/commands.hpp"
-#include "graspfit/base/as_index.hpp"
 #include "graspfit/base/atomic_file.hpp"
-#include "graspfit/base/sha256.hpp"
 #include "graspfit/exchange/dexgraspbench.hpp"
 #include "graspfit/exchange/exchange_format.hpp"
 #include "graspfit/exchange/graspit_world.hpp"
-#include "graspfit/exchange/imported_grasps.hpp"
 #include "graspfit/exchange/isaac_grasp.hpp"
 #include "graspfit/exchange/moveit_grasp.hpp"
 #include "graspfit/exchange/posed_glb.hpp"
 #include "graspfit/grasp/grasp_io.hpp"
 #include "input/hand_loading.hpp"
-#include "input/object_loading.hpp"
+#include "input/imported_files.hpp"
 #include "input/recorded_files.hpp"
 #include "output/grasp_text.hpp"
 #include "output/output_folder.hpp"
@@ -38,19 +34,14 @@ using exchange::ExchangeFormat;
 constexpr const char* kOurs = "graspfit";
 constexpr const char* kFormatNames = "graspfit|isaac|dexgraspbench|moveit|graspit|glb";
 
-/// Flags for grasps whose file has neither hand nor object; all of `object_options` are such flags,
-/// too.
-constexpr std::array<const char*, 4> kImportFlags = {"hand", "fingers", "contacts", "palm"};
-
 Command convert_command() {
-  const grasp::PlannerOptions defaults;
   Command command{
       "convert",
       "IN",
       "Writes grasps for other tools, and reads theirs. IN is a grasp file of graspfit "
-      "(grasps.json) or an\nisaac_grasp file (.yaml); OUT is of the format that its extension or "
-      "--format says:\n"
-      "  .json         graspfit       grasp file, for evaluate and hold; from isaac_grasp\n"
+      "(grasps.json), an\nisaac_grasp file (.yaml) or arrays under DexGraspBench's names (.npz); "
+      "OUT is of the format that its\nextension or --format says:\n"
+      "  .json         graspfit       grasp file, for evaluate and hold; from .yaml and .npz\n"
       "  .yaml         isaac          isaac_grasp 1.0\n"
       "  .npz          dexgraspbench  arrays under DexGraspBench's names\n"
       "  .yaml         moveit         messages moveit_msgs/Grasp, with --format moveit\n"
@@ -68,24 +59,14 @@ Command convert_command() {
   add_option(general, "grasp", "N,...", std::nullopt, "these grasps only, by their ranks");
   add_option(
       general, "object", "FILE", std::nullopt,
-      "of isaac_grasp: the object, whose frame is the file's object frame; to glb: the object's "
-      "file, if it is no longer where the grasp file says");
+      "of .yaml and .npz: the object; poses are in its frame, or in one in which .npz says where "
+      "it is; to glb: the object's file, if it is no longer where the grasp file says");
   add_option(general, "body-file", "PATH", std::nullopt,
              "graspit: the object's body file below $GRASPIT, or a mesh in millimeters");
   add_option(general, "robot-file", "PATH", std::nullopt,
              "graspit: the hand's robot file below $GRASPIT");
   add_switch(general, "quiet", "no table and no notes");
-  po::options_description request = option_group("Grasps of isaac_grasp");
-  add_option(request, "hand", "NAME|FILE", std::nullopt,
-             "the hand: a shipped one (graspfit hand list) or any description; its root link is "
-             "the file's gripper frame");
-  add_option(request, "fingers", "A,B,...", std::nullopt,
-             "the fingers that must touch for a grasp to be valid");
-  add_option(request, "contacts", "INTEGER", std::to_string(defaults.num_contacts),
-             "without --fingers: how many fingers must touch, the thumb first; if not given, no "
-             "more than the hand has");
-  add_switch(request, "palm", "the palm must touch too");
-  command.options.add(general).add(request).add(object_options());
+  command.options.add(general).add(import_options());
   return command;
 }
 
@@ -145,60 +126,26 @@ struct Source {
   std::vector<std::string> notes;
 };
 
-Source import_isaac(const Flags& flags) {
-  for (const char* flag : {"hand", "object"}) {
-    if (!flags.has(flag)) {
-      throw UsageError("an isaac_grasp file names neither hand nor object: --" + std::string(flag) +
-                       (std::string(flag) == "hand" ? " NAME|FILE" : " FILE") + " says which");
-    }
-  }
-  const hands::HandReading reading = load_hand(flags.text("hand"));
-  const std::vector<exchange::ImportedGrasp> grasps =
-      exchange::read_isaac_grasps(flags.positional(), reading.model);
-  grasp::PlannerOptions options;
-  if (flags.has("fingers")) options.fingers = flags.words("fingers");
-  options.num_contacts = flags.integer("contacts", base::at_least(1));
-  if (flags.is_default("contacts") && !flags.has("fingers")) {
-    options.num_contacts =
-        std::min(options.num_contacts, base::as_index<int>(reading.model.fingers.size()));
-  }
-  if (flags.has("palm")) options.palm = true;
-  warn_of_findings("convert", reading);
-  const grasp::ObjectFile object = load_object(flags, flags.text("object"));
-  require_solid(object);
-  exchange::ImportResult result =
-      exchange::import_grasps(object, reading.model, grasps,
-                              {.format = "isaac_grasp 1.0",
-                               .file = flags.positional(),
-                               .sha256 = base::sha256_hex(base::read_file(flags.positional()))},
-                              options);
-  Source source{std::move(result.file), object.mesh, {}, std::move(result.notes)};
-  for (const std::size_t index : result.sources) source.names.push_back(grasps[index].name);
-  return source;
-}
-
 Source read_source(const Flags& flags, const Target& target) {
-  const std::string extension = lower_extension(flags.positional());
-  const auto format = exchange::format_of("a" + extension);
-  if (format == ExchangeFormat::IsaacGrasp) return import_isaac(flags);
+  const auto format = exchange::format_of(flags.positional());
+  if (is_importable(flags.positional())) {
+    ImportedFile imported = import_file("convert", flags, flags.positional());
+    return {std::move(imported.file), std::move(imported.mesh_O), std::move(imported.names),
+            std::move(imported.notes)};
+  }
   if (format) {
     throw UsageError("IN \"" + flags.positional() + "\": files of " +
                      std::string(exchange::name_of(*format)) +
-                     " are written, not read; grasps.json and isaac_grasp (.yaml) are");
+                     " are written, not read; grasps.json, isaac_grasp (.yaml) and DexGraspBench's "
+                     "arrays (.npz) are");
   }
-  std::vector<std::string> import_flags(kImportFlags.begin(), kImportFlags.end());
-  const boost::program_options::options_description of_objects = object_options();
-  for (const auto& option : of_objects.options()) import_flags.push_back(option->long_name());
-  for (const std::string& flag : import_flags) {
-    if (!flags.has(flag) || flags.is_default(flag)) continue;
-    throw UsageError("--" + flag +
-                     " is for isaac_grasp files; a grasp file of graspfit says it itself");
-  }
+  refuse_import_flags(flags,
+                      "is for .yaml and .npz files; a grasp file of graspfit says it itself");
   if (!target.format) {
     throw UsageError("IN and OUT are both grasp files of graspfit; there is nothing to convert");
   }
   if (flags.has("object") && target.format != ExchangeFormat::PosedGlb) {
-    throw UsageError("--object is for isaac_grasp files and for --format glb; " +
+    throw UsageError("--object is for .yaml and .npz files and for --format glb; " +
                      std::string(exchange::name_of(*target.format)) +
                      " has no mesh that it could say the file of");
   }

@@ -230,7 +230,8 @@ ExitCode run_evaluate(const std::vector<std::string>& arguments) {
   const grasp::GraspFile file = grasp::read_grasps(flags.positional());
   const geometry::TriangleMesh mesh = load_recorded_object(flags, file);
   warn_of_differences("evaluate", file.object, file.surroundings.obstacles);
-  const grasp::RecordedScene scene(file, mesh, load_recorded_surroundings(flags, file));
+  const grasp::RecordedScene scene(file, mesh,
+                                   load_recorded_surroundings(file, flags.positional()));
 
   std::vector<Comparison> comparisons;
   double largest_m_difference = 0.0;

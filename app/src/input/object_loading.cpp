@@ -155,8 +155,13 @@ LoadedSurroundings load_surroundings(const Flags& flags, const geometry::Triangl
 }
 
 grasp::ObjectFile load_object(const Flags& flags, const std::string& file) {
+  return load_object(flags, file, object_read_options(flags));
+}
+
+grasp::ObjectFile load_object(const Flags& flags, const std::string& file,
+                              const grasp::ObjectReadOptions& options) {
   const SecondsBar seconds(!flags.has("quiet"), "reading and repairing " + file);
-  return grasp::read_object_file(file, object_read_options(flags));
+  return grasp::read_object_file(file, options);
 }
 
 std::vector<grasp::ObjectFile> load_placed_objects(const Flags& flags, const std::string& file) {

@@ -46,6 +46,10 @@ LoadedSurroundings load_surroundings(const Flags& flags, const geometry::Triangl
 /// shows for how many seconds it has.
 grasp::ObjectFile load_object(const Flags& flags, const std::string& file);
 
+/// The same by other options than those of the flags.
+grasp::ObjectFile load_object(const Flags& flags, const std::string& file,
+                              const grasp::ObjectReadOptions& options);
+
 /// Throws InvalidInput unless the object's surface is closed and faces outward (a mesh that was
 /// left as it is may not).
 void require_solid(const grasp::ObjectFile& object);

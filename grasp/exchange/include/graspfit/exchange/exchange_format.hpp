@@ -13,8 +13,8 @@ namespace graspfit::exchange {
 /// File formats of other tools. Each has a header of its own that says frames, units and quaternion
 /// order.
 enum class ExchangeFormat {
-  IsaacGrasp,     ///< isaac_grasp 1.0, YAML; the only one that is also read.
-  DexGraspBench,  ///< NPZ of plain arrays.
+  IsaacGrasp,     ///< isaac_grasp 1.0, YAML; also read.
+  DexGraspBench,  ///< NPZ of plain arrays; also read.
   MoveItGrasp,    ///< YAML with the keys of moveit_msgs/Grasp.
   GraspItWorld,   ///< World XML; one grasp a file.
   PosedGlb,       ///< glTF 2.0 binary: posed hand and object; one grasp a file.
@@ -26,8 +26,8 @@ std::string_view name_of(ExchangeFormat format);
 /// Returns the format of that name; empty if there is none.
 std::optional<ExchangeFormat> format_named(std::string_view name);
 
-/// The format that a file's extension stands for: .yaml and .yml isaac_grasp, .npz, .xml, .glb;
-/// empty for others.
+/// The format that a file's extension stands for: .yaml and .yml isaac_grasp, .npz, .xml, .glb,
+/// in letters of either case; empty for others.
 std::optional<ExchangeFormat> format_of(const std::filesystem::path& file);
 
 /// "xml", ...: the extension of a format's files, without the dot.

@@ -14,6 +14,17 @@
 
 namespace graspfit::exchange {
 
+/// Tolerances of reading another tool's file.
+struct ImportTolerances {
+  double largest_norm_error = 1e-3;      ///< Largest difference of a quaternion's norm from 1;
+                                         ///< quaternions are normalized then.
+  double largest_limit_excess = 1e-6;    ///< Largest excess over a joint's limits [rad or m], which
+                                         ///< is clamped: limits may be in single precision.
+  double largest_coupling_error = 1e-3;  ///< Largest distance of a coupled joint from where its
+                                         ///< leader puts it [rad or m]; it is then put there.
+  void validate() const;                 ///< Throws InvalidInput naming the field and its value.
+};
+
 /// A grasp as another tool's file states it.
 struct ImportedGrasp {
   std::string name;

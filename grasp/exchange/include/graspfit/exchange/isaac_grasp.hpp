@@ -29,15 +29,7 @@ namespace graspfit::exchange {
 std::string isaac_grasp_yaml(const grasp::GraspFile& file);
 
 /// Tolerances of reading a file.
-struct IsaacReadOptions {
-  double largest_norm_error = 1e-3;      ///< Largest difference of a quaternion's norm from 1;
-                                         ///< quaternions are normalized then.
-  double largest_limit_excess = 1e-6;    ///< Largest excess over a joint's limits [rad or m], which
-                                         ///< is clamped: limits may be in single precision.
-  double largest_coupling_error = 1e-3;  ///< Largest distance of a coupled joint from where its
-                                         ///< leader puts it [rad or m]; it is then put there.
-  void validate() const;                 ///< Throws InvalidInput naming the field and its value.
-};
+using IsaacReadOptions = ImportTolerances;
 
 /// Reads an isaac_grasp file written for `hand`, whose root link must be the file's gripper frame.
 ///

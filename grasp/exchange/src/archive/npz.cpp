@@ -1,4 +1,4 @@
-#include "npz.hpp"
+#include "archive/npz.hpp"
 
 #include <algorithm>
 #include <bit>

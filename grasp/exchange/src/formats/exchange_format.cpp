@@ -6,7 +6,7 @@
 
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/exchange/graspit_world.hpp"
-#include "yaml_text.hpp"
+#include "yaml/yaml_text.hpp"
 
 namespace graspfit::exchange {
 namespace {
@@ -147,7 +147,9 @@ std::optional<ExchangeFormat> format_named(std::string_view name) {
 }
 
 std::optional<ExchangeFormat> format_of(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   if (extension == ".yml") return ExchangeFormat::IsaacGrasp;
   for (const FormatNames& names : kFormats) {  // isaac precedes moveit, also .yaml
     if (extension == '.' + std::string(names.extension)) return names.format;

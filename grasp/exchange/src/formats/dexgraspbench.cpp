@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "archive/npz.hpp"
 #include "graspfit/geometry/rigid_transform.hpp"
-#include "npz.hpp"
 
 namespace graspfit::exchange {
 namespace {

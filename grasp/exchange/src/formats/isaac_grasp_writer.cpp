@@ -1,7 +1,7 @@
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/exchange/isaac_grasp.hpp"
 #include "graspfit/geometry/rigid_transform.hpp"
-#include "yaml_text.hpp"
+#include "yaml/yaml_text.hpp"
 
 namespace graspfit::exchange {
 namespace {

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "formats/graspit_robot_file.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/geometry/rigid_transform.hpp"
-#include "graspit_robot_file.hpp"
 
 namespace graspfit::exchange {
 namespace {

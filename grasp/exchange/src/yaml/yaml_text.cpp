@@ -1,4 +1,4 @@
-#include "yaml_text.hpp"
+#include "yaml/yaml_text.hpp"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>

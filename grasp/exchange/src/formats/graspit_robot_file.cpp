@@ -1,4 +1,4 @@
-#include "graspit_robot_file.hpp"
+#include "formats/graspit_robot_file.hpp"
 
 #include <tinyxml2.h>
 

@@ -1,4 +1,4 @@
-#include "yaml_node.hpp"
+#include "yaml/yaml_node.hpp"
 
 #include <algorithm>
 #include <charconv>

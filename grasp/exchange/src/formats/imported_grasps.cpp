@@ -1,12 +1,15 @@
 #include "graspfit/exchange/imported_grasps.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include "approach/checked_pre_grasp.hpp"
 #include "graspfit/base/as_index.hpp"
 #include "graspfit/base/errors.hpp"
+#include "graspfit/base/option_check.hpp"
 #include "graspfit/geometry/mass_properties.hpp"
 #include "graspfit/geometry/voxel_grid.hpp"
 #include "graspfit/grasp/planner_result.hpp"
@@ -93,7 +96,7 @@ class Completion {
     notes.push_back(imported.name +
                     (imported.pre_grasp_q ? ": its pre-grasp is not clear of the object or has no "
                                             "free way to the grasp, "
-                                          : ": the file has no pre-grasp, ") +
+                                          : ": the file has no pre-grasp at its palm's pose, ") +
                     instead);
   }
 
@@ -107,6 +110,16 @@ class Completion {
 };
 
 }  // namespace
+
+void ImportTolerances::validate() const {
+  const auto require = [](std::string_view field, double value) {
+    base::require(value >= 0.0 && std::isfinite(value), "ImportTolerances", field, value,
+                  "finite and >= 0");
+  };
+  require("largest_norm_error", largest_norm_error);
+  require("largest_limit_excess", largest_limit_excess);
+  require("largest_coupling_error", largest_coupling_error);
+}
 
 ImportResult import_grasps(const grasp::ObjectFile& object, const hands::HandModel& hand,
                            std::span<const ImportedGrasp> grasps, const grasp::ImportRecord& source,
