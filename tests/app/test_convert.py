@@ -362,6 +362,24 @@ class Imported(ConvertTest):
         for grasp, ours in zip(again["results"]["grasps"], back["results"]["grasps"]):
             self.assertEqual(grasp["joints"], ours["joints"])
 
+    def test_arrays_there_and_back_have_the_same_grasps_and_measures(self):
+        self.convert("out/grasps.json", "grasps.npz")
+        # The size is in the file.
+        printed = self.convert("grasps.npz", "back.json", *self.IMPORT[:-2])
+        self.assertIn("grasp_0", printed)
+        back = json.loads((self.folder / "back.json").read_text())
+        self.assertEqual(back["imported"]["format"], "DexGraspBench arrays")
+        self.assertEqual(back["object"]["meters_per_file_unit"], 0.0254)
+        self.assertEqual(len(back["results"]["grasps"]), len(self.grasps))
+        for grasp, ours in zip(back["results"]["grasps"], self.grasps):
+            self.assertEqual(grasp["joints"], ours["joints"])
+            for key in ("translation_m", "rotation_wxyz"):
+                for a, b in zip(grasp["X_OH"][key], ours["X_OH"][key]):
+                    self.assertAlmostEqual(a, b, delta=1e-12)
+            self.assertAlmostEqual(grasp["m"], ours["m"], delta=1e-12)
+            self.assertAlmostEqual(grasp["wrench"]["epsilon"], ours["wrench"]["epsilon"], delta=1e-9)
+            self.assertEqual(grasp["valid"], ours["valid"])
+
     def test_imported_grasps_can_be_tested_in_physics(self):
         self.convert("out/grasps.json", "grasps.yaml")
         self.convert("grasps.yaml", "back.json", *self.IMPORT)
@@ -435,13 +453,13 @@ class BadInput(ConvertTest):
                 ((ours, "a.yaml", "--format", "openrave"), "openrave"),
                 ((ours, "b.json"), "nothing to convert"),
                 ((ours, "out", "--format", "isaac"), "is a folder"),
-                ((ours, "a.yaml", *hand), "--hand is for isaac_grasp files"),
-                ((ours, "a.yaml", "--longest", "0.1"), "--longest is for isaac_grasp files"),
-                ((ours, "a.yaml", "--repair", "bogus"), "--repair is for isaac_grasp files"),
-                ((ours, "a.yaml", "--weld", "0.001"), "--weld is for isaac_grasp files"),
-                ((ours, "a.yaml", "--wrap"), "--wrap is for isaac_grasp files"),
+                ((ours, "a.yaml", *hand), "--hand is for .yaml and .npz files"),
+                ((ours, "a.yaml", "--longest", "0.1"), "--longest is for .yaml and .npz files"),
+                ((ours, "a.yaml", "--repair", "bogus"), "--repair is for .yaml and .npz files"),
+                ((ours, "a.yaml", "--weld", "0.001"), "--weld is for .yaml and .npz files"),
+                ((ours, "a.yaml", "--wrap"), "--wrap is for .yaml and .npz files"),
                 ((ours, "a.yaml", "--robot-file", "x.xml"), "--robot-file is for --format graspit"),
-                ((ours, "a.yaml", "--object", "torus.off"), "--object is for isaac_grasp files"),
+                ((ours, "a.yaml", "--object", "torus.off"), "--object is for .yaml and .npz files"),
                 ((ours, "a.glb", "--object", "none.off"), "none.off"),
                 ((ours, ours, "--format", "isaac"), "is IN, which would be lost"),
                 ((theirs, "./" + theirs, *hand, *mesh, "--format", "moveit"), "is IN"),
@@ -449,7 +467,9 @@ class BadInput(ConvertTest):
                 ((ours, "a.glb", "--grasp", "0"), "does not list ranks"),
                 ((ours, "no/where/a.yaml"), "no/where"),
                 (("none.json", "a.yaml"), "none.json"),
-                (("grasps.npz", "a.json"), "are written, not read"),
+                (("grasps.xml", "a.json"), "are written, not read"),
+                (("grasps.npz", "a.json"), "--hand NAME|FILE says which"),
+                (("grasps.npz", "a.json", *hand, *mesh), "grasps.npz"),
                 ((theirs, "a.json"), "--hand NAME|FILE says which"),
                 ((theirs, "a.json", *hand), "--object FILE says which"),
                 ((theirs, "a.json", "--hand", "elbow", *mesh), "elbow"),

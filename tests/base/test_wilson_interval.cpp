@@ -9,7 +9,6 @@ namespace test_wilson_interval {
 using namespace graspfit;
 using base::ShareInterval;
 using base::wilson_interval;
-using testing::Approx;
 
 TEST_CASE("Both ends of the interval are shares that the sample is just compatible with",
           "[base][wilson_interval]") {

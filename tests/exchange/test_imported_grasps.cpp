@@ -109,7 +109,8 @@ TEST_CASE("A pre-grasp of the file is kept where it is clear and its way free, e
   CHECK(result.file.grasps[1].pre_grasp->configuration.q != *near.pre_grasp_q);
   REQUIRE(result.notes.size() == 2);
   CHECK_THAT(result.notes[0], Contains("near: its pre-grasp is not clear"));
-  CHECK_THAT(result.notes[1], Contains("none: the file has no pre-grasp at its palm's pose, another one was found"));
+  CHECK_THAT(result.notes[1],
+             Contains("none: the file has no pre-grasp at its palm's pose, another one was found"));
 }
 
 TEST_CASE("Where imported grasps come from is written, read again, and no planner is named",
