@@ -33,6 +33,7 @@ const char* const kUsage =
     "  graspfit motion MOTION.json   checks and shows how a hand moves objects on a table\n"
     "  graspfit shape NAME           writes a mesh of a mug, a bottle, ...: see shape --list\n"
     "  graspfit hand ...             lists, shows, checks, exports and derives hands\n"
+    "  graspfit dataset ...          tested grasps of many objects: index, arrays, card\n"
     "  graspfit experiment ...       lists, describes and runs tables of results\n"
     "\n"
     "graspfit COMMAND --help lists a command's options with their defaults and units.\n";
@@ -43,7 +44,7 @@ void print_error(const std::string& command, const std::string& what) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 
-constexpr std::array<NamedCommand, 11> kCommands = {{{"plan", run_plan},
+constexpr std::array<NamedCommand, 12> kCommands = {{{"plan", run_plan},
                                                      {"options", run_options},
                                                      {"inspect", run_inspect},
                                                      {"evaluate", run_evaluate},
@@ -53,6 +54,7 @@ constexpr std::array<NamedCommand, 11> kCommands = {{{"plan", run_plan},
                                                      {"motion", run_motion},
                                                      {"shape", run_shape},
                                                      {"hand", run_hand},
+                                                     {"dataset", run_dataset},
                                                      {"experiment", run_experiment}}};
 
 ExitCode run(const std::vector<std::string>& arguments) {
@@ -69,6 +71,7 @@ std::string name_for_messages(const std::vector<std::string>& arguments) {
   const bool has_subcommand =
       arguments.size() > 1 &&
       ((arguments[0] == "hand" && is_hand_command(arguments[1])) ||
+       (arguments[0] == "dataset" && is_dataset_command(arguments[1])) ||
        (arguments[0] == "experiment" && is_experiment_command(arguments[1])));
   return has_subcommand ? arguments[0] + ' ' + arguments[1] : arguments[0];
 }

@@ -197,7 +197,7 @@ class BadInput(CompareTest):
                 ((a, a, "--no-hold", "--protocol", "dexonomy-hard"), "exclude each other"),
                 ((a, a, "--no-hold", "--margins", "1"), "exclude each other"),
                 ((a, a, "--margins", "-1"), "--margins"),
-                ((a, a, "--protocol", "tabletop-lift", "--margins", "1"), "lifts"),
+                ((a, a, "--protocol", "tabletop-lift", "--margins", "1"), "does not pull six ways"),
                 ((a, a, "--no-hold", "--jobs", "two"), "--jobs")):
             with self.subTest(arguments):
                 self.refused(*arguments, "--out", "compared", says=says)

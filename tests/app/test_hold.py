@@ -268,7 +268,7 @@ class PlanHold(PhysicsTest):
         measures = [grasp["m"] for grasp in by_m["grasps"]]
         self.assertEqual(measures, sorted(measures, reverse=True))
         self.assert_refused("plan", "torus.off", "--hold", "tabletop-lift", "--rank", "margin", cwd=self.folder,
-                            says="--rank margin: protocol tabletop-lift lifts")
+                            says="--rank margin: protocol tabletop-lift finds no margins")
 
 
 def value_of(cell):

@@ -132,6 +132,37 @@ def from_table(tables):
     yield from lost_attempts(table)
 
 
+MULTIDEX_PROTOCOLS = ("dro", "normal", "hard")
+
+
+def held_of(group, protocol, attempts):
+    held = int(group[f"{protocol}_held"].sum())
+    return f"{held} ({100 * held / attempts:.1f} %, {interval(held, attempts)})"
+
+
+def multidex_objects(tables):
+    table = tables.table("multidex_objects")
+    table["plan_s"] = tables.table("multidex_objects.timing")["plan_s"]
+    details = tables.table("multidex_objects.details")
+    rates = {protocol: [] for protocol in MULTIDEX_PROTOCOLS}
+    for grip, group in table.groupby("grip", sort=False):
+        attempts = int(group["attempts"].sum())
+        closed = int((details[details["grip"] == grip]["force_closure"] == 1).sum())
+        held = " | ".join(held_of(group, protocol, attempts) for protocol in MULTIDEX_PROTOCOLS)
+        for protocol, of_hands in rates.items():
+            of_hands.append(group[f"{protocol}_held"].sum() / attempts)
+        yield (f"| {HANDS[grip]} | {attempts} | {int(group['valid'].sum())} | {closed} | {held} | {group['plan_s'].sum() / attempts:.2f} "
+               f"| {group['clusters'].sum() / len(group):.0f} |")
+    yield ", ".join(f"{100 * sum(of_hands) / len(of_hands):.1f} % under `{name}`" for of_hands, name in
+                    zip(rates.values(), ("dro", "dexgraspbench-100g", "dexonomy-hard")))
+    for protocol, least in (("dro", 0.948), ("normal", 0.85)):
+        low = table[table[f"{protocol}_held"] < least * table["attempts"]]
+        named = ", ".join(f"{object_name(row['object'].removeprefix('multidex_'))} and {HANDS[row['grip']]} {int(row[f'{protocol}_held'])}"
+                          for _, row in low.sort_values(f"{protocol}_held", kind="stable").iterrows())
+        yield f"{100 * least:g} %: {named or 'none'}"
+    yield from lost_attempts(table)
+
+
 def table_object(row):
     return f"{object_name(row['object'].removeprefix('multidex_'))} in pose {row['rest_pose']}"
 

@@ -138,47 +138,47 @@ TEST_CASE("Numbers have the ranges that are written here", "[experiments][planni
     if (setting.range) ranges[setting.range->text()].push_back(setting.name.name);
   }
   for (auto& [range, names] : ranges) std::sort(names.begin(), names.end());
-  CHECK(ranges ==
-        std::map<std::string, std::vector<std::string>>{
-            {"> 0",
-             {"clip-thickness-mm", "largest-deviation-mm", "largest-gap-mm", "largest_thickness_m",
-              "least-distance-mm", "pre-grasp-clearance-mm", "score-length-voxels", "size_m",
-              "squeeze-force", "squeeze-stiffness", "wanted-gap-mm"}},
-            {">= 0",
-             {"alpha",
-              "angle-weight",
-              "beta",
-              "centroid-limit",
-              "distinct-joints",
-              "distinct-rotation-deg",
-              "distinct-translation-mm",
-              "edge-tolerance",
-              "friction",
-              "ideal-m-bias",
-              "largest-shift-mm",
-              "largest-turn-deg",
-              "max-redraws",
-              "palm-reach-tolerance-mm",
-              "pool-spacing-mm",
-              "squeeze-friction",
-              "w1",
-              "w2",
-              "w3",
-              "weak-thickness-mm"}},
-            {">= 1",
-             {"contacts", "count", "ideal-m-draws", "max-attempts", "max-iterations",
-              "max-placements", "max-seeds", "rest_pose", "target-draws"}},
-            {"in (0, 180]", {"approach-angle-deg"}},
-            {"in (0, 1]", {"pool-fraction"}},
-            {"in (0, 90)", {"theta-max-deg"}},
-            {"in [0, 1)", {"contact-score-threshold", "score-threshold"}},
-            {"in [0, 10000]", {"clearance-mm", "pre-grasp-retreat-mm"}},
-            {"in [0, 1000]", {"mean-filter-passes", "near-pad-steps", "slide-steps"}},
-            {"in [0, 31]", {"mean-filter-radius"}},
-            {"in [1, 1000000]", {"gs-samples", "ma-samples"}},
-            {"in [1, 1000]", {"refine-iterations"}},
-            {"in [3, 63]", {"neighborhood"}},
-            {"in [4, 512]", {"resolution"}}});
+  CHECK(ranges == std::map<std::string, std::vector<std::string>>{
+                      {"> 0",
+                       {"clip-thickness-mm", "largest-deviation-mm", "largest-gap-mm",
+                        "largest_thickness_m", "least-distance-mm", "meters_per_unit",
+                        "pre-grasp-clearance-mm", "score-length-voxels", "size_m", "squeeze-force",
+                        "squeeze-stiffness", "wanted-gap-mm"}},
+                      {">= 0",
+                       {"alpha",
+                        "angle-weight",
+                        "beta",
+                        "centroid-limit",
+                        "distinct-joints",
+                        "distinct-rotation-deg",
+                        "distinct-translation-mm",
+                        "edge-tolerance",
+                        "friction",
+                        "ideal-m-bias",
+                        "largest-shift-mm",
+                        "largest-turn-deg",
+                        "max-redraws",
+                        "palm-reach-tolerance-mm",
+                        "pool-spacing-mm",
+                        "squeeze-friction",
+                        "w1",
+                        "w2",
+                        "w3",
+                        "weak-thickness-mm"}},
+                      {">= 1",
+                       {"contacts", "count", "ideal-m-draws", "max-attempts", "max-iterations",
+                        "max-placements", "max-seeds", "rest_pose", "target-draws"}},
+                      {"in (0, 180]", {"approach-angle-deg"}},
+                      {"in (0, 1]", {"pool-fraction"}},
+                      {"in (0, 90)", {"theta-max-deg"}},
+                      {"in [0, 1)", {"contact-score-threshold", "score-threshold"}},
+                      {"in [0, 10000]", {"clearance-mm", "pre-grasp-retreat-mm"}},
+                      {"in [0, 1000]", {"mean-filter-passes", "near-pad-steps", "slide-steps"}},
+                      {"in [0, 31]", {"mean-filter-radius"}},
+                      {"in [1, 1000000]", {"gs-samples", "ma-samples"}},
+                      {"in [1, 1000]", {"refine-iterations"}},
+                      {"in [3, 63]", {"neighborhood"}},
+                      {"in [4, 512]", {"resolution"}}});
 }
 
 TEST_CASE("Ranges of settings end where the planner's own checks do",
@@ -207,8 +207,8 @@ TEST_CASE("Ranges of settings end where the planner's own checks do",
   int num_checked = 0;
   for (const internal::PlanningSetting& setting : internal::planning_setting_list()) {
     const std::string& name = setting.name.name;
-    if (!setting.range || name == "size_m" || name == "largest_thickness_m" ||
-        name == "rest_pose") {
+    if (!setting.range || name == "size_m" || name == "meters_per_unit" ||
+        name == "largest_thickness_m" || name == "rest_pose") {
       continue;
     }
     INFO(name);

@@ -21,12 +21,16 @@ ExitCode run_shape(const std::vector<std::string>& arguments);
 ExitCode run_motion(const std::vector<std::string>& arguments);
 ExitCode run_hand(const std::vector<std::string>& arguments);
 ExitCode run_experiment(const std::vector<std::string>& arguments);
+ExitCode run_dataset(const std::vector<std::string>& arguments);
 
 /// Whether `graspfit hand` has a command of that name.
 bool is_hand_command(const std::string& name);
 
 /// Whether `graspfit experiment` has a command of that name.
 bool is_experiment_command(const std::string& name);
+
+/// Whether `graspfit dataset` has a command of that name.
+bool is_dataset_command(const std::string& name);
 
 /// The program's version and those of the compiler and the libraries it was built with.
 std::string version_text();

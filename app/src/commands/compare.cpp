@@ -105,8 +105,9 @@ CompareRequest read_compare_request(const Flags& flags) {
     }
     return request;
   }
-  if (request.num_margins > 0 && protocol.load == hold_test::HoldLoad::Lift) {
-    throw UsageError("--margins: protocol " + protocol.name + " lifts, and pulls at nothing");
+  if (request.num_margins > 0 && !protocol.has_margins()) {
+    throw UsageError("--margins: protocol " + protocol.name +
+                     " does not pull six ways from the same state");
   }
   if (!hold_test::is_available() && !is_asked_for) {
     request.notes.emplace_back("held is left out: this build has no physics engine");

@@ -1,10 +1,10 @@
-#include <chrono>
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "commands/commands.hpp"
 #include "commands/experiment_commands.hpp"
+#include "commands/sweep_runs.hpp"
 #include "graspfit/base/number_text.hpp"
 #include "graspfit/experiments/experiment_registry.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
@@ -13,8 +13,6 @@
 #include "graspfit/sweep/sweep_runner.hpp"
 #include "graspfit/sweep/sweep_shards.hpp"
 #include "graspfit/sweep/table_comparison.hpp"
-#include "output/progress_bar.hpp"
-#include "output/text_table.hpp"
 
 namespace graspfit::app {
 namespace {
@@ -115,45 +113,6 @@ fs::path results_folder(const Flags& flags) {
 
 fs::path published_folder() { return sweep::source_folder() / "notebooks-data"; }
 
-sweep::RunManifest manifest_of(const char* command, const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {"graspfit", "experiment", command};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  sweep::RunManifest manifest;
-  manifest.command = sweep::recorded_command(words);
-  manifest.versions = version_rows();
-  return manifest;
-}
-
-std::string minutes_text(std::size_t cells, double cells_per_s) {
-  constexpr double kSecondsPerMinute = 60.0;
-  return fixed_decimal(static_cast<double>(cells) / cells_per_s / kSecondsPerMinute, 1) +
-         " min left";
-}
-
-/// Progress as text: "12 of 110 cells, 0.31 per s, 5 min left"; the rate is of this run alone.
-std::string progress_text(const sweep::RunProgress& progress,
-                          std::chrono::steady_clock::time_point start) {
-  const std::size_t reached = progress.num_done + progress.num_skipped;
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  const double rate = static_cast<double>(reached - progress.num_resumed) / elapsed.count();
-  return std::to_string(reached) + " of " + std::to_string(progress.num_cells) + " cells, " +
-         fixed_decimal(rate, 2) + " per s, " + minutes_text(progress.num_cells - reached, rate);
-}
-
-std::string status_text(const sweep::SweepStatus& status) {
-  std::string text = std::to_string(status.num_done) + " of " + std::to_string(status.num_cells) +
-                     " cells done, " + std::to_string(status.num_failed) + " of these failed, " +
-                     std::to_string(status.num_left()) + " left";
-  if (status.num_tried_again > 0) {
-    text += " (" + std::to_string(status.num_tried_again) + " tried in vain)";
-  }
-  if (status.is_running) text += ", running";
-  if (!status.cells_per_s) return text;
-  text += ", " + fixed_decimal(*status.cells_per_s, 2) + " per s";
-  if (status.is_running) text += ", " + minutes_text(status.num_left(), *status.cells_per_s);
-  return text;
-}
-
 /// Prints the result of a comparison with a published table.
 void print_comparison(const sweep::PublishedComparison& table) {
   constexpr std::size_t kMostShown = 20;
@@ -191,16 +150,6 @@ void print_left_out(const ExperimentConfig& config) {
       sweep::data_folder().c_str(), config.left_out.c_str());
 }
 
-/// The number of failed cells as text: "2 of these failed", and how many of them the next run tries
-/// again.
-std::string failures_text(const sweep::RunProgress& done) {
-  std::string text = std::to_string(done.num_failed) + " of these failed";
-  if (done.num_not_final > 0) {
-    text += " (" + std::to_string(done.num_not_final) + " to be tried again by the next run)";
-  }
-  return text;
-}
-
 sweep::ConfigRequest config_request(const Flags& flags) {
   sweep::ConfigRequest request;
   request.is_quick = flags.has("quick");
@@ -215,7 +164,14 @@ sweep::ConfigRequest config_request(const Flags& flags) {
   return request;
 }
 
-fs::path config_file(const Experiment& experiment) {
+void require_shipped_config_to_publish(const Flags& flags) {
+  if (flags.has("publish") && flags.has("config")) {
+    throw UsageError("--publish means nothing with --config: only shipped ones are published");
+  }
+}
+
+fs::path config_file(const Experiment& experiment, const Flags& flags) {
+  if (flags.has("config")) return flags.text("config");
   return sweep::config_folder() / (experiment.slug + ".json");
 }
 
@@ -223,6 +179,9 @@ fs::path config_file(const Experiment& experiment) {
 
 po::options_description config_change_options() {
   po::options_description options = option_group("What of it");
+  add_option(options, "config", "FILE", std::nullopt,
+             "a configuration of your own instead of the shipped one, in the same form "
+             "(experiment schema); never published");
   add_switch(options, "quick", kQuickMeaning);
   add_repeatable_option(options, "set", "AXIS=A,B,...",
                         "other values for an axis, by their names or, for a plain setting, any; "
@@ -237,14 +196,14 @@ po::options_description config_change_options() {
 }
 
 ExperimentConfig load_experiment_config(const Experiment& experiment, const Flags& flags) {
-  return sweep::read_config(experiment, config_file(experiment), config_request(flags));
+  return sweep::read_config(experiment, config_file(experiment, flags), config_request(flags));
 }
 
 ExperimentConfig load_config_to_run(const Experiment& experiment, const Flags& flags) {
   sweep::ConfigRequest request = config_request(flags);
   std::error_code error;
   request.leaves_out_missing_data = !fs::is_directory(sweep::data_folder(), error);
-  return sweep::read_config(experiment, config_file(experiment), request);
+  return sweep::read_config(experiment, config_file(experiment, flags), request);
 }
 
 bool is_help_printed(const Command& command, const Flags& flags) {
@@ -268,6 +227,7 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
   if (flags.has("publish") && flags.has("shard")) {
     throw UsageError("--publish means nothing with --shard; merge has it");
   }
+  require_shipped_config_to_publish(flags);
   const ExperimentConfig config = load_config_to_run(experiment, flags);
   const fs::path sources = sweep::source_folder();
   if (flags.has("publish")) sweep::require_publishable(config, sources);
@@ -277,25 +237,13 @@ ExitCode run_experiment_run(const std::vector<std::string>& arguments) {
   options.folder = results_folder(flags);
   if (flags.has("shard")) options.shard = sweep::parse_shard(flags.text("shard"));
   print_left_out(config);
-  const sweep::RunManifest manifest = manifest_of("run", arguments);
-
-  ProgressBar bar(!flags.has("quiet"));
-  const auto start = std::chrono::steady_clock::now();
-  const sweep::RunProgress done = sweep::run_sweep(
-      experiment, config, manifest, options, [&](const sweep::RunProgress& progress) {
-        const std::size_t reached = progress.num_done + progress.num_skipped;
-        bar.show(static_cast<std::int64_t>(reached), static_cast<std::int64_t>(progress.num_cells),
-                 progress_text(progress, start));
-      });
-  bar.clear();
+  const sweep::RunProgress done = run_with_progress(
+      experiment, config, begun_manifest("experiment run", arguments), options, flags.has("quiet"));
   if (flags.has("publish")) {
     sweep::publish(experiment, config, options.folder, sources, published_folder());
   }
   if (!flags.has("quiet")) {
-    std::printf("%zu cells: %zu finished (%zu earlier), %s, %zu skipped\n", done.num_cells,
-                done.num_done, done.num_resumed, failures_text(done).c_str(), done.num_skipped);
-    if (!done.first_reason.empty())
-      std::printf("first without result: %s\n", done.first_reason.c_str());
+    print_run(done);
     const fs::path folder =
         options.shard ? sweep::shard_folder(options.folder, *options.shard) : options.folder;
     std::printf("written to %s\n", folder.c_str());
@@ -309,9 +257,7 @@ ExitCode run_experiment_status(const std::vector<std::string>& arguments) {
   const std::optional<ExperimentCall> call = experiment_call(command, arguments);
   if (!call) return kSuccess;
   const auto& [flags, experiment] = *call;
-  for (const auto& status : sweep::sweep_status(experiment.slug, results_folder(flags))) {
-    std::printf("%-16s %s\n", status.name.c_str(), status_text(status).c_str());
-  }
+  print_status(sweep::sweep_status(experiment.slug, results_folder(flags)));
   return kSuccess;
 }
 
@@ -320,19 +266,20 @@ ExitCode run_experiment_merge(const std::vector<std::string>& arguments) {
   const std::optional<ExperimentCall> call = experiment_call(command, arguments);
   if (!call) return kSuccess;
   const auto& [flags, experiment] = *call;
+  require_shipped_config_to_publish(flags);
   const ExperimentConfig config = load_config_to_run(experiment, flags);
   const fs::path sources = sweep::source_folder();
   if (flags.has("publish")) sweep::require_publishable(config, sources);
   const fs::path folder = results_folder(flags);
-  const sweep::RunProgress done =
-      sweep::merge_shards(experiment, config, manifest_of("merge", arguments), folder);
+  const sweep::RunProgress done = sweep::merge_shards(
+      experiment, config, begun_manifest("experiment merge", arguments), folder);
   print_left_out(config);
   if (flags.has("publish")) {
     sweep::publish(experiment, config, folder, sources, published_folder());
   }
   if (!flags.has("quiet")) {
-    std::printf("%zu cells: %zu finished, %s, %zu skipped\nwritten to %s\n", done.num_cells,
-                done.num_done, failures_text(done).c_str(), done.num_skipped, folder.c_str());
+    print_run(done);
+    std::printf("written to %s\n", folder.c_str());
     if (flags.has("publish")) std::printf("published in notebooks-data\n");
   }
   return kSuccess;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <system_error>
 #include <utility>
 
@@ -81,6 +82,17 @@ std::string left_out_text(const CommonObject& alone, const std::vector<CommonObj
   return text;
 }
 
+/// Puts the longest edge of their boxes behind the names of objects that share one.
+void tell_apart(std::vector<CommonObject>& objects) {
+  std::map<std::string, int> counts;
+  for (const CommonObject& object : objects) ++counts[object.name];
+  for (CommonObject& object : objects) {
+    if (counts[object.name] < 2) continue;
+    const Eigen::AlignedBox3d& box = object.files[0].front()->file.object.analysis.box;
+    object.name += " (" + base::plain_decimal(std::round(1000.0 * box.sizes().maxCoeff())) + " mm)";
+  }
+}
+
 }  // namespace
 
 GraspSet read_grasp_set(const std::string& command, const Flags& flags, const std::string& path) {
@@ -116,6 +128,7 @@ CommonObjects common_objects(const GraspSet& a, const GraspSet& b) {
       common.objects.push_back(object);
     }
   }
+  tell_apart(common.objects);
   if (common.objects.empty()) {
     throw base::InvalidInput(
         "A and B have no object in common, by the bytes of its file and its "

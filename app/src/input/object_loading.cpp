@@ -24,6 +24,8 @@ constexpr double kMillimetersPerMeter = 1e3;
 constexpr std::array<std::pair<const char*, double>, 4> kMeshUnits = {
     {{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}}};
 
+}  // namespace
+
 double meters_per(const Flags& flags, const std::string& flag) {
   const std::string& unit = flags.text(flag);
   for (const auto& [name, meters] : kMeshUnits) {
@@ -31,8 +33,6 @@ double meters_per(const Flags& flags, const std::string& flag) {
   }
   fail_choice(flag, unit, "m|cm|mm|in");
 }
-
-}  // namespace
 
 boost::program_options::options_description object_options() {
   boost::program_options::options_description options = option_group("Object");

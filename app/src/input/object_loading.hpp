@@ -14,6 +14,9 @@ namespace graspfit::app {
 /// The flags that say how an object's file becomes a solid in meters.
 boost::program_options::options_description object_options();
 
+/// Meters in the unit that a flag names: m, cm, mm or in. @throws UsageError for any other.
+double meters_per(const Flags& flags, const std::string& flag);
+
 /// The options that the flags of `object_options` give. @throws UsageError, InvalidInput.
 grasp::ObjectReadOptions object_read_options(const Flags& flags);
 

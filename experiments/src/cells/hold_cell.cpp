@@ -5,13 +5,13 @@
 #include <optional>
 
 #include "cells/grasp_measures.hpp"
+#include "cells/hold_preparation.hpp"
 #include "cells/planning_table.hpp"
 #include "cells/prediction_statistics.hpp"
 #include "graspfit/base/stopwatch.hpp"
 #include "graspfit/hold_test/hold_protocol.hpp"
 #include "graspfit/hold_test/hold_test.hpp"
 #include "graspfit/sweep/setting_value.hpp"
-#include "settings/last_used.hpp"
 
 namespace graspfit::experiments::internal {
 namespace hold_cell_parts {
@@ -48,18 +48,6 @@ PlanningSettings settings_of(const sweep::Cell& cell) {
 }
 
 // Tables.
-
-constexpr std::array<std::pair<HoldStage, const char*>, 4> kStages = {
-    {{HoldStage::Rejected, "rejected"},
-     {HoldStage::Approach, "approach"},
-     {HoldStage::Load, "load"},
-     {HoldStage::Held, kHeldStage}}};
-
-const char* stage_name(HoldStage stage) {
-  return std::find_if(kStages.begin(), kStages.end(),
-                      [&](const auto& entry) { return entry.first == stage; })
-      ->second;
-}
 
 std::vector<sweep::Column> protocol_columns(const TestedProtocol& protocol) {
   const std::string prefix = protocol.prefix;
@@ -118,18 +106,6 @@ std::vector<sweep::Column> details(Protocols protocols) {
 }
 
 // Work.
-
-std::shared_ptr<const hold_test::HoldHand> hold_hand(const Planned& planned) {
-  static LastUsed<hold_test::HoldHand> prepared;
-  return prepared.value(planned.settings.hand,
-                        [&] { return hold_test::prepare_hold_hand(*planned.hand); });
-}
-
-std::shared_ptr<const hold_test::HoldObject> hold_object(const Planned& planned) {
-  static LastUsed<hold_test::HoldObject> prepared;
-  return prepared.value(planned.settings.object.key(),
-                        [&] { return hold_test::prepare_hold_object(planned.object_file->mesh); });
-}
 
 void fill_pieces(const hold_test::HoldHand& hand, const hold_test::HoldObject& object,
                  sweep::ResultRow& row) {

@@ -5,6 +5,7 @@
 #include "cells/planner_table_experiment.hpp"
 #include "graspfit/base/errors.hpp"
 #include "graspfit/base/nearest_name.hpp"
+#include "graspfit/experiments/grasp_dataset.hpp"
 #include "graspfit/experiments/planning_settings.hpp"
 #include "list/experiment_list.hpp"
 
@@ -58,6 +59,7 @@ const std::vector<Experiment>& all_experiments() {
 }
 
 const sweep::Experiment& find_experiment(std::string_view slug) {
+  if (slug == kDatasetSlug) return dataset_experiment();
   std::vector<std::string> slugs;
   for (const sweep::Experiment& experiment : all_experiments()) {
     if (experiment.slug == slug) return experiment;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 /// Factor by which lengths are multiplied so that the mesh has the size that is wanted.
 double scale_of(const ObjectSettings& settings, const geometry::TriangleMesh& mesh) {
   const Eigen::Vector3d extents = geometry::bounding_box(mesh).sizes();
-  double scale = 1.0;
+  double scale = settings.meters_per_unit.value_or(1.0);
   if (settings.size) {
     const double extent = settings.size_axis ? extents[*settings.size_axis] : extents.maxCoeff();
     if (!(extent > 0.0)) {
@@ -48,6 +48,7 @@ grasp::ObjectFile file_object(const ObjectSettings& settings) {
   const fs::path file = settings.packaged.empty() ? sweep::data_file(settings.file)
                                                   : sweep::packaged_mesh(settings.packaged);
   grasp::ObjectReadOptions options;
+  options.meters_per_file_unit = settings.meters_per_unit.value_or(1.0);
   if (settings.size || settings.largest_thickness) {
     options.meters_per_file_unit = scale_of(settings, geometry::read_mesh(file).mesh);
   }
@@ -92,9 +93,10 @@ std::string ObjectSettings::key() const {
     return length ? base::shortest_decimal(*length) : "";
   };
   return file + '\n' + packaged + '\n' + shape + '\n' + text(size) + '\n' +
-         (size_axis ? std::to_string(*size_axis) : "longest") + '\n' + text(largest_thickness) +
-         '\n' + text(rotation_xyz.x()) + ' ' + text(rotation_xyz.y()) + ' ' +
-         text(rotation_xyz.z()) + '\n' + (rest_pose ? std::to_string(*rest_pose) : "");
+         (size_axis ? std::to_string(*size_axis) : "longest") + '\n' + text(meters_per_unit) +
+         '\n' + text(largest_thickness) + '\n' + text(rotation_xyz.x()) + ' ' +
+         text(rotation_xyz.y()) + ' ' + text(rotation_xyz.z()) + '\n' +
+         (rest_pose ? std::to_string(*rest_pose) : "");
 }
 
 grasp::Surroundings surroundings_of(const PlanningSettings& settings) {

@@ -22,6 +22,8 @@ struct ObjectSettings {
   /// Length of the bounding box along `size_axis` [m]; empty: as it is.
   std::optional<double> size;
   std::optional<int> size_axis;  ///< 0, 1, 2; empty: the longest.
+  /// Of the file, where `size` does not say how large the object is; empty: 1.
+  std::optional<double> meters_per_unit;
   /// The object is scaled down further where its bounding box's shortest edge is longer than this
   /// [m], so that a hand that spans so much can close around it.
   std::optional<double> largest_thickness;
@@ -51,8 +53,8 @@ grasp::Surroundings surroundings_of(const PlanningSettings& settings);
 
 /// Names of all settings with their units and meanings:
 ///
-///     file, packaged or shape, size_m, size_axis (x|y|z|longest), largest_thickness_m,
-///     rotation_deg, rest_pose, hand, preset
+///     file, packaged or shape, size_m, size_axis (x|y|z|longest), meters_per_unit,
+///     largest_thickness_m, rotation_deg, rest_pose, hand, preset
 ///
 /// and table (z in the object's frame) and the planner's options by the names that they have as
 /// flags of `graspfit plan`.

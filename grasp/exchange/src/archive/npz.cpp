@@ -60,6 +60,14 @@ void NpzWriter::add(std::string_view name, const std::vector<std::size_t>& shape
 }
 
 void NpzWriter::add(std::string_view name, const std::vector<std::size_t>& shape,
+                    std::span<const std::int64_t> values) {
+  std::string data;
+  data.reserve(8 * values.size());
+  for (const std::int64_t value : values) append(static_cast<std::uint64_t>(value), data);
+  add_member(name, "<i8", shape, data);
+}
+
+void NpzWriter::add(std::string_view name, const std::vector<std::size_t>& shape,
                     std::span<const std::string> texts) {
   std::size_t width = 1;
   std::vector<std::u32string> rows;

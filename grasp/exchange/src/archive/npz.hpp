@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,6 +18,10 @@ class NpzWriter {
   /// values as the shape says.
   void add(std::string_view name, const std::vector<std::size_t>& shape,
            std::span<const double> values);
+
+  /// Little-endian 64-bit integers; `shape` as above.
+  void add(std::string_view name, const std::vector<std::size_t>& shape,
+           std::span<const std::int64_t> values);
 
   /// Unicode texts of a common width; `shape` as above. Precondition: the texts are valid UTF-8
   /// (bytes that are not become U+FFFD).

@@ -19,12 +19,13 @@ namespace graspfit::exchange::internal {
 namespace {
 
 constexpr std::size_t kMostNpzBytes = std::size_t{1} << 30;
-constexpr std::size_t kEndSize = 22;           // of the archive's end record, without its comment
-constexpr std::size_t kMostComment = 0xffff;   // [bytes]
-constexpr std::size_t kMostDeflation = 1032;   // bytes that a byte of deflated data can stand for
-constexpr std::size_t kDirectoryEntry = 46;    // [bytes], without name, extra field and comment
-constexpr std::size_t kLocalHeader = 30;       // [bytes], without name and extra field
-constexpr std::size_t kMostNpyHeader = 65536;  // [bytes]; plain arrays need a hundred
+constexpr std::size_t kEndSize = 22;          // of the archive's end record, without its comment
+constexpr std::size_t kMostComment = 0xffff;  // [bytes]
+constexpr std::size_t kMostDeflation = 1032;  // bytes that a byte of deflated data can stand for
+constexpr std::size_t kDirectoryEntry = 46;   // [bytes], without name, extra field and comment
+constexpr std::size_t kLocalHeader = 30;      // [bytes], without name and extra field
+constexpr std::size_t kMostNpyHeader = 4096;  // [bytes]; plain arrays need a hundred, and
+                                              // std::regex a piece of stack for each
 constexpr const char* kCutOff = "is cut off: a part of the file is missing";
 
 /// A little-endian number at a place that the caller knows to be within the bytes.
