@@ -22,6 +22,7 @@ ELSEWHERE = (
     r"graspfit (shape|plan|evaluate) .*(\bbin|_bin)\b",     # test_table.py
     r"graspfit experiment run .* --(jobs|shard|publish)",  # test_experiment.py: shards, columns
     r"graspfit experiment run .* --(set|object) ",         # test_experiment_data.py: own objects
+    r"graspfit (experiment run .* --config|dataset) ",      # test_dataset.py
     r"graspfit experiment (merge|status|verify) ",         # test_experiment.py: shards
     r'graspfit hold "results/hold_rates/',                 # test_hold.py: --grasp, --step
 )
@@ -82,9 +83,11 @@ class Pages(program.ProgramTest):
                 with self.subTest(f"{page.relative_to(SOURCE_DIR)}: {command}"):
                     self.run_line(command)
                     num_run += 1
-                    # Somebody else's file is written, which the next commands need.
-                    if command.endswith(" bunny.yaml"):
-                        shutil.copy(self.folder / "bunny.yaml", self.folder / "theirs.yaml")
+                    # Somebody else's files are written, which the next commands need.
+                    for ending in (".yaml", ".npz"):
+                        if command.endswith(f" bunny{ending}"):
+                            shutil.copy(self.folder / f"bunny{ending}",
+                                        self.folder / f"theirs{ending}")
         self.assertGreaterEqual(num_run, 10)
         self.assertGreaterEqual(num_elsewhere, 15)
 
@@ -114,7 +117,7 @@ class Pages(program.ProgramTest):
                 continue  # It only says what there was.
             for line in re.findall(r"`graspfit ([^`\n]*)`", page.read_text(encoding="utf-8")):
                 words = line.split()
-                size = 2 if words[0] in ("experiment", "hand") and len(words) > 1 else 1
+                size = 2 if words[0] in ("dataset", "experiment", "hand") and len(words) > 1 else 1
                 name = tuple(words[:size])
                 if any(word.isupper() or word.startswith("-") for word in name):
                     continue  # It stands for any command.
