@@ -59,6 +59,9 @@ class Hold(PhysicsTest):
                 (program.SOURCE_DIR / "grasp/hold_test/hold.schema.json").read_text())
             jsonschema.Draft202012Validator.check_schema(schema)
             jsonschema.validate(data, schema, cls=jsonschema.Draft202012Validator)
+            _, in_turn = self.hold("--protocol", "dro", "--grasp", "1", "--quick", out="dro", short=())
+            jsonschema.validate(in_turn, schema, cls=jsonschema.Draft202012Validator)
+            self.assertEqual(in_turn["protocol"]["parameters"]["load"], "six-in-turn")
         results = data["results"]
         self.assertEqual((results["num_grasps"], results["num_tested"]), (2, 1))
         self.assertEqual(sum(results["stages"].values()), 1)
@@ -200,7 +203,7 @@ class BadFlags(PhysicsTest):
         out = self.folder / "held"
         for flags, says in (
                 (("--protocol", "harsh"), ["harsh", "dexgraspbench-100g"]),
-                (("--squeeze", "hard"), ["hard", "forces|extrapolation|none"]),
+                (("--squeeze", "hard"), ["hard", "forces|extrapolation|limits|none"]),
                 (("--set", "mass=1"), ["mass", "object_mass_kg"]),
                 (("--set", "force_N"), ["PARAMETER=VALUE"]),
                 (("--set", "force_N=much"), ["force_N", "much"]),
